@@ -1,0 +1,1 @@
+"""Parts of the synthetic campaign: the truth, the instruments and the files they write."""

@@ -1,0 +1,1 @@
+"""Frozen records in SI: what the packages hand to each other."""

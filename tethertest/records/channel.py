@@ -1,0 +1,226 @@
+"""Logged and conditioned time series: what an instrument wrote, and what it means."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import IntFlag
+from pathlib import Path
+
+import numpy as np
+
+from tethertest.errors import DataError
+from tethertest.records.arrays import BoolArray, FlagArray, FloatArray, frozen
+
+
+class Flag(IntFlag):
+    """Quality of one sample; flags are kept beside the data and nothing is deleted."""
+
+    NONE = 0
+    MISSING = 1
+    DUPLICATE_TIME = 2
+    BACKWARD_TIME = 4
+    GAP = 8  #: first sample after dropped rows
+    STUCK = 16
+    OUT_OF_RANGE = 32
+    SATURATED = 64
+    SPIKE = 128
+    STEP = 256
+    HUM = 512
+    DRIFT = 1024
+    LOST = 2048  #: the grating's peak was not seen
+    SLIPPED = 4096  #: found in another column and put back
+    CLOCK_JUMP = 8192
+    EXCLUDED = 16384
+
+
+#: samples that no analysis uses
+UNUSABLE = (
+    Flag.MISSING | Flag.STUCK | Flag.OUT_OF_RANGE | Flag.SATURATED | Flag.SPIKE | Flag.LOST | Flag.EXCLUDED
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawChannel:
+    """One channel as logged: any clock, backward and duplicate stamps included."""
+
+    name: str  #: as the file has it
+    unit: str  #: as written; "" where the file says nothing
+    time: FloatArray  #: (n,) [s] since the log's start, by the logger's own stamps or rate
+    values: FloatArray  #: (n,) as written, NaN where the logger left a hole
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawLog:
+    """One log as read, with everything that was concluded from its content."""
+
+    path: Path
+    format: str  #: NAME of the reader
+    sha256: str
+    start: dt.datetime | None  #: first stamp as written; naive where the file has no zone
+    channels: tuple[RawChannel, ...]
+    encoding: str = ""
+    decimal: str = ""
+    separator: str = ""
+    date_order: str = ""  #: ymd, dmy or mdy where the file has dates
+    header_line: int | None = None  #: line of the column names, from 1
+    rate: float | None = None  #: [Hz], as the file states it
+    remarks: tuple[str, ...] = ()  #: what a person should know: lost rows, text events, segments
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where a channel comes from and what was done to it."""
+
+    file: str
+    sha256: str
+    reader: str
+    unit_as_written: str
+    clock: str
+    steps: tuple[str, ...] = ()  #: each conditioning step with its constants
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Channel:
+    """One time series in SI; measured and replayed channels share this type."""
+
+    name: str  #: sensor of the rig, e.g. "tension_top"
+    kind: str  #: key of `tethertest.units.KINDS`
+    unit: str  #: SI unit
+    time: FloatArray  #: (n,) [s], strictly increasing
+    values: FloatArray  #: (n,), NaN where missing
+    flags: FlagArray  #: (n,) `Flag` bits
+    at: float | None = None  #: fraction of the cable's length from the bottom
+    uncertainty: float = 0.0  #: standard uncertainty of scale, relative
+    noise: float = 0.0  #: standard deviation of one sample, in `unit`
+    source: Source | None = None
+
+    def __post_init__(self) -> None:
+        if not self.time.shape == self.values.shape == self.flags.shape or self.time.ndim != 1:
+            message = (
+                f"channel {self.name!r}: time {self.time.shape}, values {self.values.shape} and flags "
+                f"{self.flags.shape} must be 1-D and equally long"
+            )
+            raise ValueError(message)
+        if self.time.size > 1 and not np.all(np.diff(self.time) > 0):
+            message = f"channel {self.name!r}: time does not increase"
+            raise DataError(message, "rebuild the clock before making a channel")
+        object.__setattr__(self, "time", frozen(self.time))
+        object.__setattr__(self, "values", frozen(self.values))
+        object.__setattr__(self, "flags", frozen(self.flags, np.uint16))
+
+    @property
+    def rate(self) -> float:
+        """Median sampling rate [Hz]."""
+        return float(1.0 / np.median(np.diff(self.time))) if self.time.size > 1 else 0.0
+
+    @property
+    def usable(self) -> BoolArray:
+        """(n,) True where a sample may enter an analysis."""
+        usable: BoolArray = np.isfinite(self.values) & ((self.flags & np.uint16(UNUSABLE)) == 0)
+        return usable
+
+    def flag_counts(self) -> dict[str, int]:
+        """Return the number of samples per flag, without zeros, by lower-case name."""
+        counts = {
+            flag.name.lower(): int(np.count_nonzero(self.flags & np.uint16(flag)))
+            for flag in Flag
+            if flag and flag.name
+        }
+        return {name: count for name, count in counts.items() if count}
+
+    def between(self, start: float, stop: float) -> Channel:
+        """Return the part with ``start <= time <= stop``."""
+        part = slice(
+            int(np.searchsorted(self.time, start, "left")), int(np.searchsorted(self.time, stop, "right"))
+        )
+        return replace(self, time=self.time[part], values=self.values[part], flags=self.flags[part])
+
+    def with_values(self, values: FloatArray, step: str | None = None, *, unit: str | None = None) -> Channel:
+        """Return a channel with other values at the same times, and the step on record."""
+        changed = replace(self, values=values, unit=self.unit if unit is None else unit)
+        return changed if step is None else changed.with_step(step)
+
+    def with_flags(self, where: BoolArray, flag: Flag) -> Channel:
+        """Return a channel with `flag` added where the mask is true."""
+        flags = self.flags | np.where(where, np.uint16(flag), np.uint16(0))
+        return replace(self, flags=flags.astype(np.uint16))
+
+    def with_step(self, step: str) -> Channel:
+        """Return a channel with one more conditioning step on record."""
+        if self.source is None:
+            return self
+        return replace(self, source=replace(self.source, steps=(*self.source.steps, step)))
+
+    def with_time(self, time: FloatArray, step: str) -> Channel:
+        """Return a channel on another clock, and the step on record."""
+        return replace(self, time=time).with_step(step)
+
+
+@dataclass(frozen=True, slots=True)
+class ClockFit:
+    """How one instrument's clock reads against the reference: ``t_clock = offset + (1 + drift) t_reference``.
+
+    Both count seconds from the date of run.toml, each by its own stamps.
+    """
+
+    clock: str
+    reference: str
+    offset: float  #: [s] at reference time zero
+    offset_error: float  #: standard error [s]
+    drift: float  #: [1]
+    drift_error: float  #: standard error [1]
+    method: str  #: what the alignment rests on
+    remarks: tuple[str, ...] = ()
+
+    def to_reference(self, time: FloatArray) -> FloatArray:
+        """Return reference times of stamps of this clock."""
+        return (np.asarray(time) - self.offset) / (1.0 + self.drift)
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """A span of the run's clock, with how it was found."""
+
+    start: float  #: [s]
+    stop: float  #: [s]
+    reason: str = "found"
+
+    @property
+    def length(self) -> float:
+        """Length [s]."""
+        return self.stop - self.start
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something an audit saw that a person must know."""
+
+    subject: str  #: channel or clock
+    kind: str  #: flag name or clock fault, e.g. "saturated", "day_month_swapped"
+    text: str
+    severity: str = "warning"  #: "note", "warning" or "fatal" (nothing can be decided)
+    spans: tuple[tuple[float, float], ...] = ()  #: [s] on the run's clock
+    samples: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ConditionedRun:
+    """The measured side of a run: calibrated, tared, flagged, on one clock."""
+
+    channels: tuple[Channel, ...]
+    clocks: tuple[ClockFit, ...]
+    findings: tuple[Finding, ...]
+    rest_before: Window | None
+    rest_after: Window | None
+    steady: Window | None
+
+    def channel(self, name: str) -> Channel | None:
+        """Return the channel of that sensor, if the run has it."""
+        return next((channel for channel in self.channels if channel.name == name), None)
+
+
+def findings_about(findings: Sequence[Finding], subject: str) -> tuple[Finding, ...]:
+    """Return the findings about one channel or clock."""
+    return tuple(finding for finding in findings if finding.subject == subject)

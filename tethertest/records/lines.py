@@ -1,0 +1,88 @@
+"""Spectral lines and events, and what was to be expected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from tethertest.records.channel import Window
+from tethertest.records.response import NaturalFrequency
+
+
+class LineVerdict(Enum):
+    """What a line is; the value is the key in JSON."""
+
+    NONE = "none"
+    HARMONIC = "harmonic"
+    CRANK_HARMONIC = "crank_harmonic"
+    SUBHARMONIC = "subharmonic"
+    NATURAL_TRANSIENT = "natural_transient"
+    INPUT_BORNE = "input_borne"
+    MAINS = "mains"
+    ALIAS = "alias"
+    LEAKAGE = "leakage"
+    NOT_RESOLVABLE = "not_resolvable"
+    UNDETERMINED = "undetermined"
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One order of the drive in one channel; amplitude is the peak of a cosine."""
+
+    order: str  #: "1", "2", "1/2", "3/2"
+    frequency: float  #: [Hz]
+    amplitude: float  #: de-biased, in the channel's unit
+    phase: float  #: [rad] of cos(2 pi p/q f0 t + phase), t = 0 at the window's start
+    interval: tuple[float, float]  #: 95 % of the amplitude
+    standard_error: float  #: of the amplitude
+    p_value: float
+    verdict: LineVerdict
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class DriveFit:
+    """The drive frequency as fitted."""
+
+    frequency: float  #: [Hz]
+    standard_error: float  #: [Hz]
+    channels: tuple[str, ...]  #: those it was fitted to
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelLines:
+    """The lines of one channel in one window."""
+
+    channel: str
+    unit: str
+    window: Window
+    lines: tuple[Line, ...]
+    samples: int  #: used
+    left_out: int  #: flagged and not used
+
+    def line(self, order: str) -> Line | None:
+        """Return the line of that order, if it was looked for."""
+        return next((line for line in self.lines if line.order == order), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened at a time: slack interval, snap."""
+
+    kind: str  #: "slack" or "snap"
+    channel: str
+    start: float  #: [s]
+    stop: float  #: [s]
+    value: float  #: lowest tension of a slack interval, peak of a snap [N]
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """What the analysis is told beforehand; empty for a bare log."""
+
+    natural_frequencies: tuple[NaturalFrequency, ...] = ()
+    crank_orders: dict[str, float] = field(
+        default_factory=dict
+    )  #: order -> tension amplitude over order 1, from the kinematics
+    input_lines: ChannelLines | None = None  #: lines of the measured bottom motion
+    mains: float = 50.0  #: [Hz]

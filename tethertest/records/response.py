@@ -1,0 +1,75 @@
+"""What the solver answers: time series at the gauges, the field, and how sure it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from tethertest.records.arrays import FloatArray
+from tethertest.records.scene import Scene
+
+
+class Status(Enum):
+    """Outcome of a solve; the text is advice."""
+
+    OK = "Solved within the stated error."
+    TOLERANCE_NOT_MET = "The stated error is above the tolerance asked for; allow more cells or ask for less."
+    SLACK_IN_LINEAR = "The cable went slack, which the linear model cannot follow; use --fidelity nonlinear."
+    STEP_LIMIT = "The run needs more steps than allowed; shorten the duration or raise the step limit."
+    NOT_FINITE = "The solution left the range of numbers; check stiffness, mass and motion of the scene."
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorBudget:
+    """Relative errors of the gauges' tension (RMS over the record, of the dynamic part)."""
+
+    numerical: float  #: from a pair of grids
+    model: float | None = None  #: against the next fidelity
+    spread: float | None = None  #: from unknown damping when slack
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Field:
+    """Tension along the cable over time, decimated without losing extremes."""
+
+    time: FloatArray  #: (n,) [s], start of each bin
+    position: FloatArray  #: (m,) fraction of the length from the bottom
+    maximum: FloatArray  #: (n, m) [N], largest tension within the bin
+    minimum: FloatArray  #: (n, m) [N]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Response:
+    """A solved scene."""
+
+    scene: Scene
+    status: Status
+    fidelity: str  #: "linear" or "nonlinear"
+    scheme: str
+    cells: int
+    time_step: float  #: [s]
+    wall: float  #: [s]
+    time: FloatArray  #: (n,) [s]
+    gauges: FloatArray  #: (g,) fraction of the length from the bottom
+    tension: FloatArray  #: (n, g) [N], total
+    strain: FloatArray  #: (n, g), change from rest
+    platform_position: FloatArray  #: (n,) [m], from rest, upwards
+    field: Field
+    error: ErrorBudget
+    slack: dict[float, tuple[tuple[float, float], ...]]  #: gauge -> intervals [s]
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class NaturalFrequency:
+    """One natural frequency of the rig with what moves in it."""
+
+    name: str  #: e.g. "axial 1", "lateral 1", "pendulum"
+    frequency: float  #: [Hz]
+
+
+@dataclass(frozen=True, slots=True)
+class Modes:
+    """Natural frequencies of the linear system about rest."""
+
+    frequencies: tuple[NaturalFrequency, ...]

@@ -1,0 +1,109 @@
+"""The rig: cable, platform, drive, instruments, sensors and acceptance limits."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from tethertest.records.cable import Air, Cable, Platform
+from tethertest.records.quantity import SI
+
+SensorKind = Literal["tension", "wavelength", "temperature", "displacement"]
+
+
+@dataclass(frozen=True, slots=True)
+class Instrument:
+    """A logger with a clock of its own; a run's logs name it as their ``clock``."""
+
+    name: str
+    rate: Annotated[float, SI("Hz", above=0.0)]
+    clock_drift: Annotated[float, SI("1", above=0.0)] = 1e-4  #: largest drift worth believing
+    count: Annotated[float, SI("1", above=0.0)] | None = None  #: one count, as a ratio (V/V)
+
+
+@dataclass(frozen=True, slots=True)
+class Sensor:
+    """One sensor; which keys it needs follows from its kind."""
+
+    name: str
+    kind: SensorKind
+    at: Annotated[float, SI("1", minimum=0.0, maximum=1.0)] | None = (
+        None  #: fraction of the length from the bottom
+    )
+    range: tuple[str, str] | None = None  #: text with units, in the unit of the kind
+    sensitivity: Annotated[float, SI("1", above=0.0)] | None = None  #: load cell output at the rated load
+    rated: Annotated[float, SI("N", above=0.0)] | None = None
+    noise: str | None = None  #: standard deviation of one sample, text with unit
+    calibrated: dt.date | None = None
+    due: dt.date | None = None
+    expected: Annotated[float, SI("m", above=0.0)] | None = None  #: grating's wavelength
+    capture: Annotated[float, SI("m", above=0.0)] | None = None  #: largest believable distance from it
+    gauge_factor: Annotated[float, SI("1", above=0.0)] | None = None
+    thermo_optic: Annotated[float, SI("1/K")] | None = None
+    expansion: Annotated[float, SI("1/K")] | None = None
+    compensation: str | None = None  #: name of the temperature sensor
+
+
+@dataclass(frozen=True, slots=True)
+class RigDrive:
+    """The crank-slider that moves the bottom end."""
+
+    kind: Literal["crank-slider", "harmonic"] = "crank-slider"
+    rod_ratio: Annotated[float, SI("1", minimum=0.0, maximum=0.99)] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Acceptance limits per metric: the largest relative error that still passes."""
+
+    decision: Literal["guard", "simple"] = "guard"
+    peak_tension: Annotated[float, SI("1", above=0.0)] | None = None
+    order_amplitude: dict[str, Annotated[float, SI("1", above=0.0)]] = field(default_factory=dict)
+    order_phase: dict[str, Annotated[float, SI("rad", above=0.0)]] = field(default_factory=dict)
+    sprague_geers: Annotated[float, SI("1", above=0.0)] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Rig:
+    """A rig file."""
+
+    name: str
+    cable: Cable
+    platform: Platform
+    sensor: tuple[Sensor, ...]
+    instrument: tuple[Instrument, ...]
+    limits: Limits
+    air: Air | None = None
+    drive: RigDrive = RigDrive()
+    prototype: str | None = None
+    gravity: Annotated[float, SI("m/s^2", above=0.0)] = 9.80665
+    uncertainty: Mapping[str, float] = field(
+        default_factory=dict
+    )  #: "cable.length" -> standard uncertainty in SI
+
+    def sensor_named(self, name: str) -> Sensor | None:
+        """Return the sensor of that name, if there is one."""
+        return next((sensor for sensor in self.sensor if sensor.name == name), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Sea:
+    """What the prototype meets."""
+
+    frequency: tuple[Annotated[float, SI("Hz", above=0.0)], Annotated[float, SI("Hz", above=0.0)]]
+    amplitude: tuple[Annotated[float, SI("m", minimum=0.0)], Annotated[float, SI("m", minimum=0.0)]]
+
+
+@dataclass(frozen=True, slots=True)
+class Prototype:
+    """A prototype file: the full-scale cable, platform and sea."""
+
+    name: str
+    cable: Cable
+    platform: Platform
+    sea: Sea
+    air: Air | None = None
+    gravity: Annotated[float, SI("m/s^2", above=0.0)] = 9.80665
+    uncertainty: Mapping[str, float] = field(default_factory=dict)

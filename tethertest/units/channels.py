@@ -1,0 +1,108 @@
+"""Units of logged channels: what a logger wrote, checked against the kind of the channel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+from tethertest.errors import QuantityError
+from tethertest.units.registry import STANDARD_GRAVITY, parse_unit, si_unit
+
+#: kind of channel -> SI unit of its values ("" where the logger's own unit stays)
+KINDS: Final = {
+    "tension": "N",
+    "strain": "1",
+    "wavelength": "m",
+    "displacement": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "temperature": "K",
+    "voltage": "V",
+    "ratio": "1",
+    "count": "count",
+    "other": "",
+}
+
+#: a mass unit on a load cell's channel means the weight of that mass
+_FORCE_OF_MASS = {"kg": 1.0, "g": 1e-3, "t": 1e3, "lb": 0.45359237, "lbs": 0.45359237, "kgf": 1.0, "tf": 1e3}
+#: in this order a unit without a declared kind is given one
+_KINDS_BY_DIMENSION = (
+    "tension",
+    "displacement",
+    "velocity",
+    "acceleration",
+    "temperature",
+    "voltage",
+    "count",
+    "strain",
+)
+_CELSIUS = {"degc", "°c", "℃", "deg c", "celsius", "c"}
+
+
+@dataclass(frozen=True, slots=True)
+class UnitScale:
+    """Linear map from a value as written to SI: ``si = factor * written + offset``."""
+
+    kind: str  #: key of `KINDS`
+    unit: str  #: SI unit of the result
+    factor: float
+    offset: float = 0.0
+
+
+def channel_scale(written: str, kind: str | None = None) -> UnitScale:
+    """Return how a channel's values become SI.
+
+    Parameters
+    ----------
+    written : str
+        Unit as the logger wrote it.
+    kind : str, optional
+        Kind of the channel if it is known; without it the kind follows from the unit. The unit nm is a wavelength unless
+        the channel is known to be something else.
+
+    Returns
+    -------
+    UnitScale
+        Kind, SI unit, factor and offset.
+
+    Raises
+    ------
+    QuantityError
+        Unknown unit, or one whose dimension does not belong to the kind.
+    """
+    text = written.strip()
+    if kind == "tension" and text.lower() in _FORCE_OF_MASS:
+        return UnitScale("tension", "N", _FORCE_OF_MASS[text.lower()] * STANDARD_GRAVITY)
+    if kind == "acceleration" and text.lower() in {"g", "gn", "g0"}:
+        return UnitScale("acceleration", "m/s^2", STANDARD_GRAVITY)
+    if text.lower() in _CELSIUS and kind in {None, "temperature"}:
+        return UnitScale("temperature", "K", 1.0, 273.15)
+    if not text and kind is None:
+        return UnitScale("other", "", 1.0)
+    quantity = parse_unit(text)
+    dimension = quantity.dimensionality
+    found = kind if kind is not None else _kind_of(text, quantity)
+    target = KINDS.get(found)
+    if target is None:
+        message = f"kind {found!r} is not known"
+        raise QuantityError(message, f"use one of {', '.join(KINDS)}")
+    if not target:
+        return UnitScale("other", text, 1.0)
+    unit = si_unit(target)
+    if dimension != unit.dimensionality:
+        message = f"unit {written!r} has dimension {dimension}, expected one of {found} ({target})"
+        raise QuantityError(message, "correct the sensor's kind in the rig file or the log's units")
+    return UnitScale(found, target, float(quantity.to(unit).magnitude))
+
+
+def _kind_of(text: str, quantity: Any) -> str:
+    if text == "nm":
+        return "wavelength"
+    if text.replace(" ", "") in {"mV/V", "V/V", "uV/V", "µV/V"}:
+        return "ratio"
+    if not text or text in {"-", "1"}:
+        return "other"
+    for kind in _KINDS_BY_DIMENSION:
+        if si_unit(KINDS[kind]).dimensionality == quantity.dimensionality:
+            return kind
+    return "other"

@@ -1,0 +1,102 @@
+"""One pint registry, made when it is first asked for, and the aliases that field texts need."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import Any
+
+from tethertest.errors import QuantityError
+
+STANDARD_GRAVITY = 9.80665  #: [m/s^2], CGPM 1901
+
+
+@cache
+def registry() -> Any:
+    """Return the shared pint registry (importing pint costs a quarter of a second)."""
+    import pint
+
+    units: Any = pint.UnitRegistry(autoconvert_offset_to_baseunit=False, cache_folder=None)
+    units.define("percent_ = 0.01")
+    units.define("microstrain_ = 1e-6")
+    units.define("cycle_per_minute_ = hertz / 60")
+    units.define("logger_count_ = [logger_count]")
+    return units
+
+
+#: spellings found in rig files and logs, and what pint is to read; applied to the whole unit text
+_WHOLE = {
+    "": "dimensionless",
+    "-": "dimensionless",
+    "1": "dimensionless",
+    "%": "percent_",
+    "ppm": "1e-6 dimensionless",
+    "ue": "microstrain_",
+    "µe": "microstrain_",
+    "με": "microstrain_",
+    "µε": "microstrain_",
+    "ustrain": "microstrain_",
+    "microstrain": "microstrain_",
+    "um/m": "microstrain_",
+    "µm/m": "microstrain_",
+    "μm/m": "microstrain_",
+    "um\\m": "microstrain_",
+    "µm\\m": "microstrain_",
+    "strain": "dimensionless",
+    "m/m": "dimensionless",
+    "rpm": "cycle_per_minute_",
+    "1/min": "cycle_per_minute_",
+    "deg c": "degC",
+    "°c": "degC",
+    "℃": "degC",
+    "degc": "degC",
+    "celsius": "degC",
+    "volts": "volt",
+    "volt": "volt",
+    "newton": "newton",
+    "newtons": "newton",
+    "counts": "logger_count_",
+    "count": "logger_count_",
+    "nm": "nanometer",
+    "n m": "newton * meter",
+    "n/m": "newton / meter",
+    "lbf": "force_pound",
+    "kip": "1000 force_pound",
+    "kips": "1000 force_pound",
+    "in": "inch",
+}
+
+_POWER = re.compile(r"(?<=[A-Za-z])([2-4])(?![A-Za-z0-9])")
+
+
+def parse_unit(text: str) -> Any:
+    """Return the pint quantity that a unit text stands for.
+
+    Raises
+    ------
+    QuantityError
+        The text is no unit that this package or pint knows.
+    """
+    import pint
+
+    cleaned = text.strip()
+    alias = _WHOLE.get(cleaned.lower() if cleaned != "Nm" else "Nm")
+    if cleaned == "Nm":
+        alias = "newton * meter"
+    if alias is None:
+        alias = _POWER.sub(r"**\1", cleaned.replace("·", " ").replace("²", "**2").replace("³", "**3"))
+    try:
+        return registry().parse_expression(alias) * registry().dimensionless
+    except (pint.UndefinedUnitError, pint.DefinitionSyntaxError) as error:
+        message = f"unit {text!r} is not known"
+        raise QuantityError(message, "use a unit such as N, kN, mm, Hz, mV/V, nm or degC") from error
+    except pint.OffsetUnitCalculusError:
+        return registry().Quantity(1.0, registry().kelvin)
+    except Exception as error:  # pint lets tokenizer and type errors of its parser through
+        message = f"unit {text!r} cannot be read"
+        raise QuantityError(message, "write it like kg/m, N s/m or m/s^2") from error
+
+
+def si_unit(text: str) -> Any:
+    """Return the pint unit of one of the package's own SI texts: ``"1"``, ``"count"`` or plain SI."""
+    return registry().parse_units({"1": "dimensionless", "count": "logger_count_"}.get(text, text))

@@ -1,1 +1,1 @@
-"""kernels."""
+"""Compiled loops: floats and arrays in, arrays filled; numpy and numba only."""

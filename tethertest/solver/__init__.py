@@ -1,1 +1,7 @@
-"""solver."""
+"""A Scene in, a Response out: statics, modes and axial stress waves."""
+
+from tethertest.solver.modes import modes
+from tethertest.solver.rest import RestState, rest_state
+from tethertest.solver.solve import Fidelity, relative_difference, solve
+
+__all__ = ["Fidelity", "RestState", "modes", "relative_difference", "rest_state", "solve"]

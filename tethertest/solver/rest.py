@@ -1,0 +1,91 @@
+"""The cable at rest: unstretched length and density, end tensions, and the lift that holds them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from tethertest.errors import DataError
+from tethertest.records.scene import Scene
+
+#: largest relative difference between two statements of one tension that still counts as agreement
+_TENSION_AGREEMENT = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class RestState:
+    """A straight cable at rest under its own weight; tension grows upwards."""
+
+    length: float  #: unstretched [m]
+    mass_per_length: float  #: unstretched [kg/m]
+    axial_stiffness: float  #: EA [N]
+    bottom_tension: float  #: [N]
+    gravity: float  #: along the cable [m/s^2]
+
+    @property
+    def weight(self) -> float:
+        """Weight of the whole cable [N]."""
+        return self.mass_per_length * self.length * self.gravity
+
+    @property
+    def top_tension(self) -> float:
+        """Tension at the upper end [N]."""
+        return self.bottom_tension + self.weight
+
+    @property
+    def wave_speed(self) -> float:
+        """Axial wave speed in the material coordinate [m/s]."""
+        return math.sqrt(self.axial_stiffness / self.mass_per_length)
+
+    def tension(self, fraction: float) -> float:
+        """Return the tension [N] at a fraction of the length from the bottom."""
+        return self.bottom_tension + fraction * self.weight
+
+
+def rest_state(scene: Scene) -> RestState:
+    """Return the rest of a vertical or straight scene.
+
+    Raises
+    ------
+    DataError
+        The tension is not given, given twice at odds, or leaves part of the cable slack.
+    """
+    cable = scene.cable
+    stiffness = cable.axial_stiffness
+    if stiffness is None:
+        if cable.youngs_modulus is None or cable.diameter is None:
+            message = (
+                f"scene {scene.name!r}: neither axial_stiffness nor youngs_modulus with diameter is given"
+            )
+            raise DataError(message, "give [cable] axial_stiffness")
+        stiffness = cable.youngs_modulus * math.pi * cable.diameter**2 / 4.0
+    gravity = scene.gravity if scene.geometry.kind == "vertical" else 0.0
+    total_weight = cable.length * cable.mass_per_length * gravity
+    bottom = _bottom_tension(scene, total_weight)
+    if bottom <= 0.0:
+        message = (
+            f"scene {scene.name!r}: the top tension leaves {bottom:.4g} N at the bottom; the cable weighs "
+            f"{total_weight:.4g} N"
+        )
+        raise DataError(message, "raise the static tension above the weight of the cable")
+    if cable.length_state == "unstretched":
+        return RestState(cable.length, cable.mass_per_length, stiffness, bottom, gravity)
+    mean = bottom + 0.5 * total_weight
+    length = cable.length / (1.0 + mean / stiffness)
+    return RestState(length, cable.mass_per_length * cable.length / length, stiffness, bottom, gravity)
+
+
+def _bottom_tension(scene: Scene, weight: float) -> float:
+    stated = [scene.geometry.tension] if scene.geometry.tension is not None else []
+    if scene.top.static_tension is not None:
+        stated.append(scene.top.static_tension - weight)
+    if not stated:
+        message = f"scene {scene.name!r}: no tension at rest is given"
+        raise DataError(message, "give [geometry] tension or, for a platform, [top] static_tension")
+    if len(stated) == 2 and abs(stated[0] - stated[1]) > _TENSION_AGREEMENT * abs(stated[0]):
+        message = (
+            f"scene {scene.name!r}: [geometry] tension says {stated[0]:.6g} N at the bottom, "
+            f"[top] static_tension says {stated[1]:.6g} N"
+        )
+        raise DataError(message, "give one of the two")
+    return stated[0]

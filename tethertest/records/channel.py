@@ -67,6 +67,7 @@ class RawLog:
     header_line: int | None = None  #: line of the column names, from 1
     rate: float | None = None  #: [Hz], as the file states it
     remarks: tuple[str, ...] = ()  #: what a person should know: lost rows, text events, segments
+    reason: str = ""  #: why this reader was chosen
 
 
 @dataclass(frozen=True, slots=True)

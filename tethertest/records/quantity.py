@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SI:
-    """Annotation ``Annotated[float, SI("kg/m", above=0.0)]``: text with any unit of that dimension becomes SI."""
+    """Annotation ``Annotated[float, SI("kg/m", above=0.0)]``: text with a unit becomes a number in SI."""
 
     unit: str  #: SI unit; ``"1"`` for a pure number
     above: float | None = None  #: the value must be greater

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import datetime as dt
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from tethertest.records.cable import Air, Cable, Platform
 from tethertest.records.quantity import SI
+from tethertest.units import KINDS, parse_quantity
 
 SensorKind = Literal["tension", "wavelength", "temperature", "displacement"]
 
@@ -44,6 +46,36 @@ class Sensor:
     thermo_optic: Annotated[float, SI("1/K")] | None = None
     expansion: Annotated[float, SI("1/K")] | None = None
     compensation: str | None = None  #: name of the temperature sensor
+
+
+def sensor_range(sensor: Sensor) -> tuple[float, float]:
+    """Return the measuring range in the SI unit of the sensor's kind; unbounded where the rig file has none.
+
+    Raises
+    ------
+    QuantityError
+        A limit is no quantity of the sensor's kind.
+    """
+    if sensor.range is None:
+        return (-math.inf, math.inf)
+    low, high = (parse_quantity(text, KINDS[sensor.kind]).value for text in sensor.range)
+    return (low, high)
+
+
+def sensor_noise(sensor: Sensor) -> float:
+    """Return the standard deviation of one reading in SI; 0 where the rig file has none.
+
+    A grating reads a wavelength [m], a temperature grating too; other sensors read the unit of their kind.
+
+    Raises
+    ------
+    QuantityError
+        The text is no quantity of what the sensor reads.
+    """
+    if sensor.noise is None:
+        return 0.0
+    unit = "m" if sensor.expected is not None else KINDS[sensor.kind]
+    return parse_quantity(sensor.noise, unit).value
 
 
 @dataclass(frozen=True, slots=True)

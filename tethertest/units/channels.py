@@ -57,8 +57,8 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
     written : str
         Unit as the logger wrote it.
     kind : str, optional
-        Kind of the channel if it is known; without it the kind follows from the unit. The unit nm is a wavelength unless
-        the channel is known to be something else.
+        Kind of the channel if it is known; without it the kind follows from the unit. The unit nm is a
+        wavelength unless the channel is known to be something else.
 
     Returns
     -------

@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tethertest.readers import read_log
+from tethertest.readers.inspect import describe
+
+TEXT = (
+    "time [s],F_top [kN],e [µm/m],T [degC],x [smoots]\n"
+    "0.0,0.5,100,20,1\n0.1,1.5,-100,21,2\n0.2,,0,22,3\n0.2,2.5,50,20,4\n0.1,0.5,0,20,5\n0.2,0.5,0,20,6\n0.9,1.0,0,20,7\n"
+)
+
+
+def test_channels_are_described_in_si_with_what_is_wrong_with_them(write):
+    path = write(TEXT)
+    found = describe(read_log(path))
+    force, strain, temperature, odd = found["channels"]
+    assert force == {
+        "name": "F_top",
+        "kind": "tension",
+        "unit_as_written": "kN",
+        "unit": "N",
+        "n": 7,
+        "rate": pytest.approx(10.0),
+        "duration": 0.9,
+        "minimum": 500.0,
+        "mean": pytest.approx(6500 / 6),
+        "maximum": 2500.0,
+        "flags": {"missing": 1, "duplicate_time": 1, "backward_time": 1, "gap": 1},
+    }
+    assert (strain["kind"], strain["minimum"]) == ("strain", pytest.approx(-1e-4))
+    assert (temperature["kind"], temperature["maximum"]) == ("temperature", pytest.approx(295.15))
+    assert (odd["kind"], odd["unit"], odd["maximum"]) == ("other", "smoots", 7.0)
+    assert any("unit 'smoots' is not known" in remark for remark in found["remarks"])
+
+
+def test_the_object_is_json_and_says_why_the_reader_was_chosen(write):
+    path = write("# start: 2026-09-05T14:20:00+08:00\n" + TEXT)
+    found = json.loads(json.dumps(describe(read_log(path)), allow_nan=False))
+    assert found["path"] == str(path)
+    assert (found["format"], found["encoding"]) == ("delimited", "utf-8")
+    assert found["start"] == "2026-09-05T14:20:00+08:00"
+    assert found["reason"] == "text that no format reader claims"
+
+
+def test_an_empty_channel_has_no_numbers(write):
+    channel = describe(read_log(write("time [s],F [N],T [degC]\n0.0,1,\n0.5,2,\n")))["channels"][1]
+    assert (channel["minimum"], channel["mean"], channel["flags"]["missing"]) == (None, None, 2)

@@ -1,0 +1,137 @@
+from __future__ import annotations
+
+import hashlib
+import importlib
+import inspect
+import pkgutil
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import tethertest.readers
+from tethertest.errors import FileFormatError
+from tethertest.readers import READERS, identify, read_log, registry
+from tethertest.readers.text import Head, read_head
+
+LVM_HEAD = "LabVIEW Measurement\t\nWriter_Version\t2\n"
+
+
+def test_every_module_with_a_name_is_registered_once():
+    modules = [
+        importlib.import_module(f"tethertest.readers.{found.name}")
+        for found in pkgutil.iter_modules(tethertest.readers.__path__)
+    ]
+    named = {module.NAME for module in modules if hasattr(module, "NAME")}
+    registered = [reader.NAME for reader in READERS]
+    assert sorted(named) == sorted(registered)
+
+
+@pytest.mark.parametrize("reader", READERS, ids=lambda reader: reader.NAME)
+def test_readers_share_one_signature(reader):
+    sniff, read = inspect.signature(reader.sniff), inspect.signature(reader.read)
+    assert list(sniff.parameters) == ["head"]
+    assert list(read.parameters) == ["path", "settings"]
+    assert read.parameters["settings"].default is None
+    assert read.return_annotation == "RawLog"
+
+
+def test_the_generic_reader_is_last():
+    assert READERS[-1] is registry.GENERIC
+    assert READERS[-1].NAME == "delimited"
+
+
+def test_two_claims_are_an_error_that_names_both(write, monkeypatch):
+    twin = SimpleNamespace(NAME="twin", sniff=lambda head: "it looks like mine", read=None)
+    monkeypatch.setattr(registry, "READERS", (twin, *READERS))
+    path = write(LVM_HEAD)
+    with pytest.raises(FileFormatError, match=r"more than one reader claims.*'twin'.*'lvm'"):
+        identify(path)
+
+
+def test_the_settings_choose_among_two_claims(write, monkeypatch, settings):
+    twin = SimpleNamespace(NAME="twin", sniff=lambda head: "it looks like mine", read=None)
+    monkeypatch.setattr(registry, "READERS", (twin, *READERS))
+    assert identify(write(LVM_HEAD), settings(format="lvm")).NAME == "lvm"
+
+
+def test_a_format_that_does_not_fit_names_the_right_one(write, settings):
+    with pytest.raises(FileFormatError, match=r"says format 'catman', but the file is lvm"):
+        read_log(write(LVM_HEAD), settings(format="catman"))
+
+
+def test_an_unknown_format_lists_the_known_ones(write, settings):
+    with pytest.raises(FileFormatError, match=r"format 'labview' is not known\n  fix: use one of lvm, tdms"):
+        read_log(write(LVM_HEAD), settings(format="labview"))
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"MDF     4.10    \0\0\0\0", "an ASAM MDF measurement"),
+        (b"\x89HDF\r\n\x1a\n\0\0\0", "an HDF5 file"),
+        (bytes(range(256)) * 4, "a binary file of unknown kind"),
+    ],
+)
+def test_binary_files_are_refused_by_what_they_are(write, data, words):
+    with pytest.raises(FileFormatError, match=f"found {words}, expected a log"):
+        read_log(write(data, "log.bin"))
+
+
+@pytest.mark.parametrize(
+    ("head", "words"),
+    [
+        (
+            '"TOA5","Logger","CR1000X"\n"TIMESTAMP","RECORD","F"\n"TS","RN","N"\n"","","Min"\n',
+            "Campbell TOA5",
+        ),
+        ("Date\tTime\tLinenumber\tError status\tW-01\n2022-04-14\t\t1\t0;0\t108.8\n", "FBGS ILLumiSense"),
+    ],
+)
+def test_layouts_that_the_generic_reader_would_misread_are_refused(write, head, words):
+    with pytest.raises(FileFormatError, match=f"found an? {words}"):
+        read_log(write(head))
+
+
+@pytest.mark.parametrize("compression", ["", "gz", "zip"])
+def test_a_file_is_recognised_by_content_through_compression(write, compression):
+    path = write(LVM_HEAD, "renamed.csv", compression=compression)
+    assert identify(path).NAME == "lvm"
+
+
+def test_a_header_of_104_lines_is_passed(write):
+    meta = "".join(f"CH {n} Configuration: Threshold=2.0 Minimum=1525.0 Maximum=1555.0\n" for n in range(104))
+    path = write(meta + "Timestamp\t# CH 1\n2026/5/19 09:38:55.04646\t1\t1550.1\n")
+    assert identify(path).NAME == "enlight-peaks"
+
+
+def test_the_head_holds_lines_without_ends(write):
+    head = read_head(write("a,b\r\n1,2\r\n"))
+    assert isinstance(head, Head)
+    assert head.lines[:2] == ("a,b", "1,2")
+    assert head.encoding == "ascii"
+
+
+def test_the_log_keeps_the_hash_of_the_file_on_disk_and_the_reason(write):
+    path = write("time [s],F [N]\n0,1\n1,2\n", compression="gz")
+    log = read_log(path)
+    assert log.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+    assert log.reason == "text that no format reader claims"
+
+
+def test_channels_are_read_only(write):
+    channel = read_log(write("time [s],F [N]\n0,1\n1,2\n")).channels[0]
+    assert channel.values.dtype == np.float64
+    with pytest.raises(ValueError, match="read-only"):
+        channel.values[0] = 3.0
+
+
+def test_heavy_packages_wait_until_a_log_is_read():
+    script = (
+        "import sys, tethertest.readers;"
+        "print([name for name in ('pandas', 'nptdms', 'pint', 'scipy') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -1,0 +1,80 @@
+"""What a log is, as one object for people and programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tethertest.errors import QuantityError
+from tethertest.records.channel import RawChannel, RawLog
+from tethertest.units import UnitScale, channel_scale
+
+#: a step this many times the usual one is a gap
+GAP_STEPS = 1.5
+
+
+def describe(log: RawLog) -> dict[str, Any]:
+    """Describe a log as read, before any conditioning.
+
+    Parameters
+    ----------
+    log : RawLog
+        As `read_log` returns it.
+
+    Returns
+    -------
+    dict
+        The object of ``inspect --json``: SI values, None where there are none.
+    """
+    remarks = list(log.remarks)
+    channels = [_channel(channel, remarks) for channel in log.channels]
+    return {
+        "path": str(log.path),
+        "format": log.format,
+        "encoding": log.encoding,
+        "start": None if log.start is None else log.start.isoformat(),
+        "decimal": log.decimal,
+        "separator": log.separator,
+        "date_order": log.date_order,
+        "header_line": log.header_line,
+        "rate": log.rate,
+        "sha256": log.sha256,
+        "channels": channels,
+        "remarks": remarks,
+        "reason": log.reason,
+    }
+
+
+def _channel(channel: RawChannel, remarks: list[str]) -> dict[str, Any]:
+    scale = _scale(channel, remarks)
+    values = channel.values[np.isfinite(channel.values)] * scale.factor + scale.offset
+    steps = np.diff(channel.time)
+    forward = steps[steps > 0]
+    usual = float(np.median(forward)) if forward.size else 0.0
+    return {
+        "name": channel.name,
+        "kind": scale.kind,
+        "unit_as_written": channel.unit,
+        "unit": scale.unit,
+        "n": int(channel.values.size),
+        "rate": 1.0 / usual if usual > 0 else None,
+        "duration": float(channel.time.max() - channel.time.min()) if channel.time.size else 0.0,
+        "minimum": float(values.min()) if values.size else None,
+        "mean": float(values.mean()) if values.size else None,
+        "maximum": float(values.max()) if values.size else None,
+        "flags": {
+            "missing": int(channel.values.size - values.size),
+            "duplicate_time": int(np.count_nonzero(steps == 0)),
+            "backward_time": int(np.count_nonzero(steps < 0)),
+            "gap": int(np.count_nonzero(steps > GAP_STEPS * usual)) if usual > 0 else 0,
+        },
+    }
+
+
+def _scale(channel: RawChannel, remarks: list[str]) -> UnitScale:
+    try:
+        return channel_scale(channel.unit)
+    except QuantityError as error:
+        remarks.append(f"channel {channel.name!r}: {error.problem}")
+        return UnitScale("other", channel.unit, 1.0)

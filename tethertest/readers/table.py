@@ -1,0 +1,282 @@
+"""Rows of a text log into columns of numbers, fast, and never shifted by one.
+
+The bulk is read by pandas; before that every row's fields are counted, because pandas fills short rows and
+drops long ones without a word.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from tethertest.errors import FileFormatError
+from tethertest.records.arrays import FloatArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SPACES: Final = "spaces"  #: separator of columns that are aligned by blanks
+#: cells that loggers write where they have no value; each use ends up in the log's remarks
+MISSING_TOKENS: Final = frozenset([
+    "nan", "n/a", "na", "#n/a", "null", "none", "lost", "-", "--", "---", "----", "overflow",
+    "overrange", "ovf", "ovl", "invalid", "error", "inf", "+inf", "-inf",
+])  # fmt: skip
+_NUMBER: Final = {
+    ".": re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"),
+    ",": re.compile(r"[-+]?(?:\d+,?\d*|,\d+)(?:[eE][-+]?\d+)?"),
+}
+_NEWLINE, _QUOTE = ord("\n"), ord('"')
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rows:
+    """The data rows of a text log, not yet parsed."""
+
+    path: Path
+    body: bytes  #: UTF-8, one row a line, no blank lines
+    lines: npt.NDArray[np.int64]  #: (n,) line of each row in the file, from 1
+    counts: npt.NDArray[np.int64]  #: (n,) fields of each row
+    separator: str
+    decimal: str
+    newline_at_end: bool  #: the last row ends with a line end
+    quotes: bool = False  #: cells may be quoted
+
+    def keep(self, mask: npt.NDArray[np.bool_]) -> Rows:
+        """Return the rows where the mask is true."""
+        parts = self.body.split(b"\n")
+        body = b"\n".join(part for part, kept in zip(parts, mask, strict=False) if kept) + b"\n"
+        complete = self.newline_at_end or not bool(mask[-1])
+        return replace(
+            self, body=body, lines=self.lines[mask], counts=self.counts[mask], newline_at_end=complete
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Columns:
+    """Parsed columns and what a person should know about them."""
+
+    numbers: dict[int, FloatArray]  #: (n,) NaN where the cell is blank
+    texts: dict[int, list[str]]  #: n cells, "" where blank
+    remarks: tuple[str, ...]
+
+
+def find_rows(
+    path: Path, text: bytes, first_line: int, separator: str, decimal: str, *, quotes: bool = False
+) -> Rows:
+    """Count the fields of every row; blank lines and blank rows at the end are left out.
+
+    Parameters
+    ----------
+    path : Path
+        The log, for messages.
+    body : bytes
+        The whole text, UTF-8, each ended by a line feed.
+    first_line : int
+        Line of the first data row, from 1.
+    separator : str
+        One ASCII character, or `SPACES`.
+    decimal : str
+        ``"."`` or ``","``.
+    quotes : bool
+        Whether cells may be quoted; instruments do not quote, and a quote in a comment is only a character.
+
+    Raises
+    ------
+    FileFormatError
+        There are no data rows, or a quote is not closed in its row.
+    """
+    blank = b" \t\n" if separator == SPACES else b" \n" + separator.encode()
+    trimmed = len(text.rstrip(blank))
+    if trimmed == 0:
+        message = "the log has a header but no data rows"
+        raise FileFormatError(
+            message, "the logger was stopped before its first sample; choose another file", path=path
+        )
+    end = text.find(b"\n", trimmed)
+    newline_at_end = end >= 0
+    text = text[: end if newline_at_end else len(text)] + b"\n"
+    characters = np.frombuffer(text, np.uint8)
+    ends = np.flatnonzero(characters == _NEWLINE)
+    if separator == SPACES:
+        blanks = (characters == 32) | (characters == 9) | (characters == _NEWLINE)
+        marks = np.flatnonzero(~blanks & np.concatenate(([True], blanks[:-1])))
+        counts = np.diff(np.searchsorted(marks, ends), prepend=0)
+    else:
+        is_separator = characters == ord(separator)
+        if quotes and b'"' in text:
+            inside = np.cumsum(characters == _QUOTE) % 2 == 1
+            if np.any(inside[ends]):
+                line = first_line + int(np.argmax(inside[ends]))
+                message = "a quoted cell is not closed in its row"
+                raise FileFormatError(message, "export the log again", path=path, line=line)
+            is_separator &= ~inside
+        counts = np.diff(np.searchsorted(np.flatnonzero(is_separator), ends), prepend=0) + 1
+    lengths = np.diff(ends, prepend=-1) - 1
+    filled = lengths > 0
+    lines = first_line + np.flatnonzero(filled)
+    if not np.all(filled):
+        text = b"\n".join(part for part in text.split(b"\n") if part) + b"\n"
+    return Rows(
+        path, text, lines, counts[filled].astype(np.int64), separator, decimal, newline_at_end, quotes
+    )
+
+
+def check_widths(rows: Rows, minimum: int, maximum: int) -> None:
+    """Refuse rows with too few or too many fields, and a last row cut inside its last number.
+
+    Raises
+    ------
+    FileFormatError
+        Names the first wrong line; a short last row is reported as a cut file.
+    """
+    wrong = (rows.counts < minimum) | (rows.counts > maximum)
+    expected = f"{minimum}" if minimum == maximum else f"{minimum} to {maximum}"
+    if np.any(wrong):
+        row = int(np.argmax(wrong))
+        count = int(rows.counts[row])
+        if row == len(rows.counts) - 1 and count < minimum:
+            message = f"the last row is cut: found {count} of {expected} columns"
+            remedy = "copy the whole file from the logger again, or delete this row in a copy of the log"
+        else:
+            message = f"found {count} columns, expected {expected}"
+            remedy = "export the log again; check separator and decimal in run.toml"
+        raise FileFormatError(message, remedy, path=rows.path, line=int(rows.lines[row]))
+    if not rows.newline_at_end and _last_number_is_cut(rows):
+        message = (
+            "the last row is cut: it has no line end and its last number has fewer digits than all others"
+        )
+        remedy = "copy the whole file from the logger again, or delete this row in a copy of the log"
+        raise FileFormatError(message, remedy, path=rows.path, line=int(rows.lines[-1]))
+
+
+def read_columns(
+    rows: Rows,
+    width: int,
+    names: Collection[str],
+    *,
+    texts: Collection[int] = (),
+    unused: Collection[int] = (),
+) -> Columns:
+    """Parse the rows.
+
+    Parameters
+    ----------
+    rows : Rows
+        Rows whose widths were checked; short rows are filled with blanks.
+    width : int
+        Number of columns.
+    names : collection of str
+        Names of the columns, for messages.
+    texts, unused : collection of int
+        Columns that are returned as text, or not at all; all others must be numbers.
+
+    Raises
+    ------
+    FileFormatError
+        A cell is neither blank, nor a number, nor one of `MISSING_TOKENS`.
+    """
+    import pandas as pd
+
+    present = min(width, int(rows.counts.max()))
+    wanted = [column for column in range(present) if column not in unused]
+    numeric = [column for column in wanted if column not in texts]
+    labels = list(names)
+    remarks: list[str] = []
+    try:
+        frame = _parsed(rows, wanted, texts)
+        odd = [column for column in numeric if frame[column].dtype.kind not in "iuf"]
+        words = _parsed(rows, odd, odd) if odd else frame
+    except pd.errors.ParserError as error:
+        message = f"the rows cannot be split into columns ({error})"
+        raise FileFormatError(message, "export the log without quotes", path=rows.path) from error
+    numbers = {
+        column: _converted(words[column], rows, labels[column], remarks)
+        if column in odd
+        else frame[column].to_numpy(dtype=np.float64)
+        for column in numeric
+    }
+    for column, values in numbers.items():
+        infinite = np.isinf(values)
+        if np.any(infinite):
+            remarks.append(
+                f"column {labels[column]!r}: {np.count_nonzero(infinite)} infinite values read as missing"
+            )
+            numbers[column] = np.where(infinite, np.nan, values)
+    cells = {column: frame[column].fillna("").astype(object).tolist() for column in wanted if column in texts}
+    return Columns(numbers, cells, tuple(remarks))
+
+
+def is_number(text: str, decimal: str) -> bool:
+    """Return whether a cell is a number with that decimal sign."""
+    return _NUMBER[decimal].fullmatch(text.strip()) is not None
+
+
+def _parsed(rows: Rows, wanted: list[int], texts: Collection[int]) -> pd.DataFrame:
+    """Parse columns: text where asked for, else numbers, or text again where a cell is no number."""
+    import pandas as pd
+
+    return pd.read_csv(
+        io.BytesIO(rows.body),
+        sep=r"\s+" if rows.separator == SPACES else rows.separator,
+        decimal=rows.decimal,
+        header=None,
+        names=list(range(int(rows.counts.max()))),
+        usecols=wanted,
+        dtype={column: str for column in wanted if column in texts},
+        na_values=[""],
+        keep_default_na=False,
+        skip_blank_lines=False,
+        index_col=False,
+        encoding="utf-8",
+        engine="c",
+        low_memory=False,
+        quoting=csv.QUOTE_MINIMAL if rows.quotes else csv.QUOTE_NONE,
+    )
+
+
+def _converted(cells: pd.Series, rows: Rows, name: str, remarks: list[str]) -> FloatArray:
+    """Convert cell by cell, for columns that are not plain numbers throughout."""
+    pattern = _NUMBER[rows.decimal]
+    values = np.full(len(cells), np.nan)
+    tokens: dict[str, list[int]] = {}
+    for row, cell in enumerate(cells.fillna("").astype(object)):
+        text = cell.strip()
+        if pattern.fullmatch(text):
+            values[row] = float(text.replace(",", "."))
+        elif text.lower() in MISSING_TOKENS:
+            tokens.setdefault(text, []).append(row)
+        elif text:
+            raise _not_a_number(text, rows, name, int(rows.lines[row]))
+    for token, where in tokens.items():
+        first = rows.lines[where[0]]
+        remarks.append(
+            f"column {name!r}: {len(where)} cells {token!r} read as missing, first in line {first}"
+        )
+    return values
+
+
+def _not_a_number(text: str, rows: Rows, name: str, line: int) -> FileFormatError:
+    other = "," if rows.decimal == "." else "."
+    remedy = "export the log again; a logger's text belongs in a comment column"
+    if _NUMBER[other].fullmatch(text):
+        remedy = f'set decimal = "{other}" for this log in run.toml if that is its decimal sign'
+    elif re.fullmatch(r"[-+]?\d{1,3}(?:[., ']\d{3})+(?:[.,]\d+)?", text):
+        remedy = "export the log without thousands separators"
+    message = f"found {text!r} in column {name!r}, expected a number with decimal sign {rows.decimal!r}"
+    return FileFormatError(message, remedy, path=rows.path, line=line)
+
+
+def _last_number_is_cut(rows: Rows) -> bool:
+    last_lines = rows.body[:-1].split(b"\n")[-201:]
+    pattern = re.compile(rb"[.,](\d+)(?:[eE][-+]?\d+)?\"?\s*$")
+    found = [pattern.search(line) for line in last_lines]
+    digits = [len(match[1]) if match else 0 for match in found]
+    return len(digits) > 5 and min(digits[:-1]) == max(digits[:-1]) > digits[-1]

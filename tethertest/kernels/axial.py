@@ -140,22 +140,27 @@ def march(
     """
     n = position.size - 1
     steps = bottom.size - 2
+    per_cell = 1.0 / line.cell
+    per_mass = time_step / (line.mass * line.cell)
+    fall = time_step * line.gravity
+    slow = time_step * line.drag / line.mass
+    half_mass = 0.5 * line.mass * line.cell
     velocity = np.zeros(n + 1)
-    before = bottom[0]
     stretch = np.empty(n)
     for i in range(n):
-        stretch[i] = (position[i + 1] - position[i]) / line.cell
+        stretch[i] = (position[i + 1] - position[i]) * per_cell
     rate = np.zeros(n)
     excess = np.zeros(n)
     tension = np.empty(n)
     station = np.empty(n + 2)
     last_station = np.empty(n + 2)
-    last_top = position[n]
-    half_mass = 0.5 * line.mass * line.cell
-    row = 0
+    highest = np.full(n + 2, -np.inf)
+    lowest = np.full(n + 2, np.inf)
+    before, last_top = bottom[0], position[n]
+    row, bin_number, bin_end, next_row = 0, 0, record.bin_steps, 0.0
     for k in range(steps):
         for i in range(n):
-            new = (position[i + 1] - position[i]) / line.cell
+            new = (position[i + 1] - position[i]) * per_cell
             rate[i] = new - stretch[i]
             stretch[i] = new
         if line.viscosity > 0.0:
@@ -164,8 +169,8 @@ def march(
 
         end_velocity = velocity[n]
         for i in range(1, n):
-            force = (tension[i] - tension[i - 1]) / line.cell - line.drag * abs(velocity[i]) * velocity[i]
-            velocity[i] += time_step * (force / line.mass - line.gravity)
+            pull = per_mass * (tension[i] - tension[i - 1])
+            velocity[i] += pull - fall - slow * abs(velocity[i]) * velocity[i]
         end_acceleration = 0.0
         if not top.fixed:
             mass = top.mass + half_mass
@@ -177,20 +182,30 @@ def march(
 
         start_acceleration = (bottom[k + 1] - 2.0 * bottom[k] + before) / (time_step * time_step)
         before = bottom[k]
-        for i in range(n):
-            station[i + 1] = tension[i]
+        last_station[:] = station
+        station[1 : n + 1] = tension
         station[0] = tension[0] - half_mass * (start_acceleration + line.gravity)
         station[n + 1] = tension[n - 1] + half_mass * (end_acceleration + line.gravity)
         if line.unilateral:  # the momentum balance of half a slack cell is no tension
             station[0] = max(0.0, station[0]) if tension[0] > 0.0 else 0.0
             station[n + 1] = max(0.0, station[n + 1]) if tension[n - 1] > 0.0 else 0.0
 
-        if k == 0:
-            last_station[:] = station
-        row = _keep(
-            record, row, k, time_step, station, last_station, stretch, rate, position[n], last_top, line
-        )
-        last_station[:] = station
+        for i in range(n + 2):
+            highest[i] = max(highest[i], station[i])
+            lowest[i] = min(lowest[i], station[i])
+        if k + 1 == bin_end or k + 1 == steps:
+            record.field_maximum[bin_number] = highest
+            record.field_minimum[bin_number] = lowest
+            highest[:], lowest[:] = station, station  # a front between two bins belongs to both
+            bin_number += 1
+            bin_end += record.bin_steps
+        while next_row <= k * time_step * (1.0 + 1e-12) and row < record.top.size:
+            weight = 1.0 if k == 0 else 1.0 - (k * time_step - next_row) / time_step
+            weight = min(1.0, max(0.0, weight))
+            _keep(record, row, weight, station, last_station, stretch, rate, line)
+            record.top[row] = last_top + weight * (position[n] - last_top)
+            row += 1
+            next_row = row * record.interval
         last_top = position[n]
 
         for i in range(1, n + 1):
@@ -205,36 +220,22 @@ def march(
 def _keep(
     record: Record,
     row: int,
-    k: int,
-    time_step: float,
+    weight: float,
     station: FloatArray,
     last_station: FloatArray,
     stretch: FloatArray,
     rate: FloatArray,
-    top: float,
-    last_top: float,
     line: Line,
-) -> int:
-    """Write the output rows passed by step ``k`` and the field's extremes; return the next row."""
-    bin_number = min(k // record.bin_steps, record.field_maximum.shape[0] - 1)
-    for i in range(station.size):
-        value = station[i]
-        record.field_maximum[bin_number, i] = max(record.field_maximum[bin_number, i], value)
-        record.field_minimum[bin_number, i] = min(record.field_minimum[bin_number, i], value)
-    while row < record.top.size and row * record.interval <= k * time_step * (1.0 + 1e-12):
-        weight = 1.0 if k == 0 else 1.0 - (k * time_step - row * record.interval) / time_step
-        weight = min(1.0, max(0.0, weight))
-        for g in range(record.gauge_index.size):
-            j = record.gauge_index[g]
-            upper = record.gauge_weight[g]
-            now = (1.0 - upper) * station[j] + upper * station[j + 1]
-            then = (1.0 - upper) * last_station[j] + upper * last_station[j + 1]
-            record.tension[row, g] = then + weight * (now - then)
-            part = _strain_at(j, upper, station, stretch, rate, weight, line)
-            record.strain[row, g] = max(0.0, part) if line.unilateral else part
-        record.top[row] = last_top + weight * (top - last_top)
-        row += 1
-    return row
+) -> None:
+    """Write one output row, ``weight`` of the way from the last step to this one."""
+    for g in range(record.gauge_index.size):
+        j = record.gauge_index[g]
+        upper = record.gauge_weight[g]
+        now = (1.0 - upper) * station[j] + upper * station[j + 1]
+        then = (1.0 - upper) * last_station[j] + upper * last_station[j + 1] if weight < 1.0 else now
+        record.tension[row, g] = then + weight * (now - then)
+        part = _strain_at(j, upper, station, stretch, rate, weight, line)
+        record.strain[row, g] = max(0.0, part) if line.unilateral else part
 
 
 @compiled

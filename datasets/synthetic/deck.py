@@ -12,14 +12,14 @@ from .rig import GRAVITY, Hover, Rig
 
 DEPTH = 500.0
 """MoorDyn drags only what is below its water surface: the rig stands this deep."""
-FAR = 1000.0
+FAR = 1e5
 """Distance of the anchors that the position loop's springs hang on, in m."""
 PRELOAD = 100.0
 """Pull in each of those springs at rest, in N, so that they never go slack."""
 THIN = 1000.0
 """The fluid is thinner than air by this factor, the drag coefficients larger: no buoyancy."""
-LOOP_DENSITY = 1e-9
-"""Mass per length of those springs: 0.5 mg ride on the UAV."""
+LOOP_DENSITY = 1e-12
+"""Mass per length of those springs: 0.05 mg of each rides on the UAV."""
 
 
 def _row(*words: object) -> str:
@@ -35,8 +35,8 @@ def input_file(rig: Rig, hover: Hover, cells: int, offset: float, step: float) -
     rig : Rig
         Cable, UAV and air.
     hover : Hover
-        The UAV's position loop: two long massless springs with dampers, one upwards and one
-        sideways, whose pull at rest is taken off the constant lift.
+        The UAV's position loop: long massless springs with dampers, one upwards and, where the
+        tether leans, one sideways, whose pull at rest is taken off the constant lift.
     cells : int
         Number of cable segments.
     offset : float
@@ -47,6 +47,7 @@ def input_file(rig: Rig, hover: Hover, cells: int, offset: float, step: float) -
     shape, sideways = rest_shape(rig, cells, offset)
     x, z = float(shape[-1, 0]), float(shape[-1, 1]) - DEPTH
     held = hover.stiffness > 0.0
+    leaning = float(offset != 0.0)
     preload = PRELOAD if held else 0.0
     lift = rig.static_tension + rig.uav_mass * GRAVITY - preload
     rows = [
@@ -59,22 +60,22 @@ def input_file(rig: Rig, hover: Hover, cells: int, offset: float, step: float) -
     ]  # fmt: skip
     points = [
         _row(1, "Coupled", 0.0, 0.0, -DEPTH, 0, 0, 0, 0),
-        _row(2, "Free", x, 0.0, z, rig.uav_mass, 0, 0, 0, sideways - preload, 0.0, lift),
+        _row(2, "Free", x, 0.0, z, rig.uav_mass, 0, sideways - leaning * preload, 0.0, lift, 0, 0),
     ]
     cables = [_row(1, "cable", 1, 2, rig.length, cells, "-")]
     if held:
         length = FAR - PRELOAD / hover.stiffness
         spring, damper = hover.stiffness * length, hover.damping * length
         rows.append(_row("loop", 1e-6, LOOP_DENSITY, spring, damper, 0, 0, 0, 0, 0))
-        points += [
-            _row(3, "Coupled", x, 0.0, z + FAR, 0, 0, 0, 0),
-            _row(4, "Coupled", x + FAR, 0.0, z, 0, 0, 0, 0),
-        ]
-        cables += [_row(2, "loop", 2, 3, length, 1, "-"), _row(3, "loop", 2, 4, length, 1, "-")]
+        points.append(_row(3, "Coupled", x, 0.0, z + FAR, 0, 0, 0, 0))
+        cables.append(_row(2, "loop", 2, 3, length, 1, "-"))
+        if leaning:
+            points.append(_row(4, "Coupled", x + FAR, 0.0, z, 0, 0, 0, 0))
+            cables.append(_row(3, "loop", 2, 4, length, 1, "-"))
     rows += [
         "--- POINTS ---",
-        "ID Type X Y Z Mass Vol CdA Ca Fx Fy Fz",
-        "(-) (-) (m) (m) (m) (kg) (m3) (m2) (-) (N) (N) (N)",
+        "ID Type X Y Z Mass Vol Fx Fy Fz CdA Ca",
+        "(-) (-) (m) (m) (m) (kg) (m3) (N) (N) (N) (m2) (-)",
         *points,
         "--- LINES ---",
         "ID Type A B Length Segments Out",
@@ -100,7 +101,8 @@ def coupled_points(rig: Rig, hover: Hover, cells: int, offset: float) -> list[fl
     base = [0.0, 0.0, -DEPTH]
     if hover.stiffness <= 0.0:
         return base
-    return [*base, x, 0.0, z + FAR, x + FAR, 0.0, z]
+    above = [*base, x, 0.0, z + FAR]
+    return [*above, x + FAR, 0.0, z] if offset else above
 
 
 def rest_state(rig: Rig, hover: Hover, cells: int, offset: float) -> bytes:

@@ -13,7 +13,7 @@ import moordyn
 import numpy as np
 from numpy.typing import NDArray
 
-from .deck import DEPTH, FAR, LOOP_DENSITY, PRELOAD, coupled_points, input_file, rest_state
+from .deck import DEPTH, FAR, LOOP_DENSITY, coupled_points, input_file, rest_state
 from .equilibrium import rest_shape
 from .rig import GAUGES, GRAVITY, Hover, Rig
 
@@ -21,6 +21,8 @@ Floats = NDArray[np.float64]
 Motion = Callable[[Floats], Floats]
 
 COURANT = 0.61
+DIFFUSION = 0.55
+"""Step times damping over mass per length and spacing squared; rk4 diverges above 0.69."""
 RECORD_RATE = 2500.0
 
 
@@ -51,7 +53,9 @@ class Truth:
 def time_step(rig: Rig, cells: int) -> float:
     """Return the integration step: an integer part of the record's step."""
     record = 1.0 / RECORD_RATE
-    wanted = COURANT * rig.length / cells / rig.wave_speed
+    spacing = rig.length / cells
+    diffusive = DIFFUSION * rig.mass_per_length * spacing**2 / rig.axial_damping
+    wanted = min(COURANT * spacing / rig.wave_speed, diffusive)
     return record / int(np.ceil(record / wanted))
 
 
@@ -96,6 +100,10 @@ def simulate(
                 points[2] = height[index + 1] - DEPTH
                 speeds[2] = mean_speed[index]
                 moordyn.Step(system, points, speeds, index * step, step)
+    shape, _ = rest_shape(rig, cells, offset)
+    position[0, :, [0, 2]] = (shape[watched] - [0.0, DEPTH]).T  # loaded, not yet read back
+    velocity[0] = 0.0
+    velocity[:, 0, 2] = (height[2:] - height[:-2])[::every] / (2.0 * step)  # not the step's mean
     acceleration = np.diff(height, 2) / step**2
     base = height[1:-1:every], acceleration[::every]
     return _signals(rig, hover, cells, offset, watched, position, velocity, base)
@@ -215,6 +223,6 @@ def top_tension(
     """
     loop = -hover.stiffness * moved[:, 2] - hover.damping * climb
     net = rig.static_tension + loop - half_cell * GRAVITY - last
-    carried = half_cell + LOOP_DENSITY * FAR * (0.5 if PRELOAD and hover.stiffness else 0.0)
+    carried = half_cell + (0.5 * LOOP_DENSITY * FAR if hover.stiffness else 0.0)
     acceleration = net / (rig.uav_mass + carried)
     return last + half_cell * (acceleration + GRAVITY)

@@ -1,1 +1,6 @@
-"""conditioning."""
+"""From logs on any clock to calibrated, tared, flagged channels on one clock."""
+
+from tethertest.conditioning.condition import condition
+from tethertest.conditioning.guide import Guide
+
+__all__ = ["Guide", "condition"]

@@ -1,0 +1,116 @@
+"""What each sensor's channel becomes once the clocks and the windows are known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tethertest.conditioning.flags import sensor_of
+from tethertest.conditioning.guide import Guide
+from tethertest.conditioning.mapping import is_grating
+from tethertest.conditioning.rest import RunWindows
+from tethertest.conditioning.strain import strain_of, temperature_of
+from tethertest.conditioning.tare import DEFAULT_RATED, STRAIN_DRIFT, TENSION_DRIFT, Level, rest_level, zeroed
+from tethertest.records.channel import Channel, Finding
+from tethertest.records.rig import Rig, Sensor
+from tethertest.signal.filters import filled
+from tethertest.signal.noise import white_noise
+
+#: the base stands in the same place before and after when it differs by less than this [m]: only then does a
+#: difference of tension at rest mean that a zero drifted
+SAME_PLACE = 2e-3
+
+
+def finished(
+    channels: Sequence[Channel], rig: Rig, guide: Guide, windows: RunWindows
+) -> tuple[tuple[Channel, ...], tuple[Finding, ...]]:
+    """Return tared tensions and displacements, strains and temperatures.
+
+    Parameters
+    ----------
+    channels : sequence of Channel
+        Tension [N], displacement [m] and wavelengths [m] on the run's clock.
+    rig : Rig
+        Their sensors.
+    guide : Guide
+        Tensions at rest.
+    windows : RunWindows
+        The rest windows.
+    """
+    levels = {channel.name: _levels(channel, windows) for channel in channels}
+    findings: list[Finding] = []
+    if _moved(channels, levels):
+        text = "the base stands elsewhere after the run: only the rest before it is used for zeros"
+        findings.append(Finding("rest_after", "base_moved", text, "note"))
+        levels = {name: (before, None if before else after) for name, (before, after) in levels.items()}
+    temperatures = {
+        channel.name: _temperature(channel, sensor_of(rig, channel), levels[channel.name])
+        for channel in channels
+        if sensor_of(rig, channel).kind == "temperature"
+    }
+    result: list[Channel] = []
+    for channel in channels:
+        sensor = sensor_of(rig, channel)
+        before, after = levels[channel.name]
+        found: tuple[Finding, ...] = ()
+        if channel.name in temperatures:
+            changed = temperatures[channel.name]
+        elif is_grating(sensor):
+            changed, found = _strain(channel, sensor, rig, temperatures, windows, before or after)
+        elif channel.kind == "tension":
+            if channel.name not in guide.static_tension:
+                text = "the tension at rest is not known: rest is set to zero"
+                findings.append(Finding(channel.name, "no_static_tension", text))
+            allowed = TENSION_DRIFT * (sensor.rated or DEFAULT_RATED)
+            expected = guide.static_tension.get(channel.name, 0.0)
+            changed, found = zeroed(channel, before, after, expected, allowed)
+        else:
+            changed, found = zeroed(channel, before, None if before else after, 0.0, np.inf)
+        findings += found
+        result.append(replace(changed, noise=white_noise(filled(changed)) if changed.usable.any() else 0.0))
+    return tuple(result), tuple(findings)
+
+
+def _levels(channel: Channel, windows: RunWindows) -> tuple[Level | None, Level | None]:
+    return rest_level(channel, windows.rest_before), rest_level(channel, windows.rest_after)
+
+
+def _moved(channels: Sequence[Channel], levels: dict[str, tuple[Level | None, Level | None]]) -> bool:
+    pairs = [levels[channel.name] for channel in channels if channel.kind == "displacement"]
+    return any(before and after and abs(after.value - before.value) > SAME_PLACE for before, after in pairs)
+
+
+def _temperature(channel: Channel, sensor: Sensor, levels: tuple[Level | None, Level | None]) -> Channel:
+    level = levels[0] or levels[1]
+    if not is_grating(sensor) or not channel.usable.any():
+        return channel
+    rest = level.value if level is not None else float(np.median(channel.values[channel.usable]))
+    return temperature_of(channel, sensor, rest)
+
+
+def _strain(
+    channel: Channel,
+    sensor: Sensor,
+    rig: Rig,
+    temperatures: dict[str, Channel],
+    windows: RunWindows,
+    level: Level | None,
+) -> tuple[Channel, tuple[Finding, ...]]:
+    found: tuple[Finding, ...] = ()
+    temperature = temperatures.get(sensor.compensation or "")
+    if sensor.compensation and (temperature is None or not temperature.usable.any()):
+        text = f"no temperature from {sensor.compensation!r}: strain is not compensated"
+        found = (Finding(sensor.name, "not_compensated", text),)
+        temperature = None
+    if temperature is not None and temperature.unit != "K":
+        temperature = None
+    if level is not None:
+        rest = level.value
+    else:
+        rest = float(np.median(channel.values[channel.usable])) if channel.usable.any() else 1.0
+    strain = strain_of(channel, sensor, rest, temperature, rig)
+    before, after = _levels(strain, windows)
+    tared, drifted = zeroed(strain, before, after, 0.0, STRAIN_DRIFT)
+    return tared, (*found, *drifted)

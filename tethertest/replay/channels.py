@@ -1,0 +1,79 @@
+"""Replayed channels: the response read where and when the sensors read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tethertest.records.arrays import FloatArray
+from tethertest.records.channel import Channel, Source
+from tethertest.records.response import Response
+from tethertest.records.run import Run
+from tethertest.replay.motion import bottom_motion
+from tethertest.replay.scene import run_scene
+from tethertest.solver import solve
+
+#: mesh of the response that the clock alignment uses; taps need no more
+_ALIGNMENT_CELLS = 20
+
+
+def replayed_channels(response: Response, start: float, measured: Sequence[Channel]) -> tuple[Channel, ...]:
+    """Return one replayed channel for each measured tension and strain.
+
+    Parameters
+    ----------
+    response : Response
+        Replay of the run, from its time zero.
+    start : float
+        Run time of the replay's time zero [s].
+    measured : sequence of Channel
+        Measured channels on the run's clock; each gives place and times. Times that the replay does not reach
+        are left out.
+    """
+    replayed = []
+    for channel in measured:
+        if channel.kind not in {"tension", "strain"} or channel.at is None:
+            continue
+        series = response.tension if channel.kind == "tension" else response.strain
+        gauge = int(np.argmin(np.abs(response.gauges - channel.at)))
+        first, last = np.searchsorted(channel.time, [start, start + response.time[-1]])
+        time = channel.time[first:last]
+        values = np.interp(time - start, response.time, series[:, gauge])
+        replayed.append(_channel(channel, time, values, response.scheme))
+    return tuple(replayed)
+
+
+def expected_bottom_tension(run: Run) -> Callable[[Channel], Channel]:
+    """Return what clock alignment needs: the bottom tension that a bottom displacement calls for.
+
+    The returned function takes the displacement on any clock and answers on the same clock.
+    """
+
+    def answer(heave: Channel) -> Channel:
+        motion = bottom_motion(heave, frequency=None, rest_before=None)
+        response = solve(
+            run_scene(run, motion.duration),
+            measured=motion.motion,
+            fidelity="nonlinear",
+            cells=_ALIGNMENT_CELLS,
+        )
+        time = response.time + motion.start
+        answered = _channel(heave, time, response.tension[:, 0], response.scheme)
+        return replace(answered, name="expected bottom tension", kind="tension", unit="N", at=0.0)
+
+    return answer
+
+
+def _channel(like: Channel, time: FloatArray, values: FloatArray, scheme: str) -> Channel:
+    clock = like.source.clock if like.source is not None else ""
+    return replace(
+        like,
+        time=time,
+        values=values,
+        flags=np.zeros(time.size, dtype=np.uint16),
+        uncertainty=0.0,
+        noise=0.0,
+        source=Source("", "", f"replayed: {scheme}", like.unit, clock),
+    )

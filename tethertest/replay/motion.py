@@ -1,0 +1,124 @@
+"""The measured bottom displacement, made smooth enough to drive the solver.
+
+A stiff cable turns a hundredth of a millimetre of encoder noise into tenths of a newton of ringing at its
+axial resonance. So the drive is kept up to the highest frequency at which the encoder sees more than its own
+noise, and the wide band is kept only where something sudden happened: in the rest windows, where the marker
+taps are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tethertest.errors import DataError
+from tethertest.records.arrays import FloatArray
+from tethertest.records.channel import Channel, Window
+from tethertest.records.scene import MeasuredMotion
+from tethertest.signal.filters import filled, low_passed
+
+#: band kept in the rest windows [Hz]; a marker tap of 60 ms has little above it
+WIDE_BAND = 40.0
+#: orders of the drive that are always kept; a crank-slider's fourth is a thousandth of its first
+KEPT_ORDERS = 3.5
+#: lowest cut-off while the drive runs [Hz], so that ramps keep their shape
+LOWEST_CUTOFF = 2.0
+#: a line of the encoder counts as motion when its power density is this many times the noise floor
+ABOVE_NOISE = 30.0
+#: time over which the bands are faded into each other, and the record into rest at its ends [s]
+FADE = 0.3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BottomMotion:
+    """Smooth bottom displacement from rest, on the run's clock."""
+
+    start: float  #: run time of the motion's time zero [s]
+    motion: MeasuredMotion
+    cutoff: float  #: [Hz], band kept while the drive runs
+    wide_cutoff: float  #: [Hz], band kept in the rest windows
+
+    @property
+    def duration(self) -> float:
+        """Length of the record [s]."""
+        return float(self.motion.time[-1])
+
+
+def bottom_motion(
+    heave: Channel,
+    *,
+    frequency: float | None,
+    rest_before: Window | None,
+    rest_after: Window | None = None,
+    steady: Window | None = None,
+) -> BottomMotion:
+    """Return the measured bottom displacement as the solver takes it.
+
+    Parameters
+    ----------
+    heave : Channel
+        Bottom displacement [m].
+    frequency : float or None
+        Drive frequency [Hz]; None keeps the wide band everywhere.
+    rest_before, rest_after, steady : Window or None
+        Windows of the run; displacement counts from the rest before the drive.
+
+    Raises
+    ------
+    DataError
+        Fewer than ten usable samples.
+    """
+    if np.count_nonzero(heave.usable) < 10:
+        message = f"channel {heave.name!r} has {np.count_nonzero(heave.usable)} usable samples"
+        raise DataError(message, "the replay needs the bottom motion: export the encoder's log again")
+    rate = heave.rate
+    count = int((heave.time[-1] - heave.time[0]) * rate) + 1
+    time = np.arange(count, dtype=np.float64) / rate
+    start = float(heave.time[0])
+    values = np.interp(time, heave.time - start, filled(heave))
+    at_rest = time < 1.0 if rest_before is None else time <= rest_before.stop - start
+    values = values - float(np.median(values[at_rest])) if at_rest.any() else values - values[0]
+
+    wide = low_passed(values, rate, WIDE_BAND)
+    cutoff = WIDE_BAND
+    if frequency is not None:
+        cutoff = _drive_band(values, rate, frequency, time, start, steady)
+        narrow = low_passed(values, rate, cutoff)
+        share = _rest_share(time + start, rest_before, rest_after)
+        wide = share * wide + (1.0 - share) * narrow
+    fade_in = np.clip(time / FADE, 0.0, 1.0)
+    wide = wide * fade_in**2 * (3.0 - 2.0 * fade_in)
+    return BottomMotion(start, MeasuredMotion(time, np.asarray(wide)), cutoff, WIDE_BAND)
+
+
+def _drive_band(
+    values: FloatArray, rate: float, frequency: float, time: FloatArray, start: float, steady: Window | None
+) -> float:
+    """Return the cut-off [Hz] that keeps what the encoder sees above its own noise in the steady window."""
+    from scipy.signal import welch
+
+    lowest = max(LOWEST_CUTOFF, KEPT_ORDERS * frequency)
+    inside = (
+        np.ones(time.size, dtype=bool)
+        if steady is None
+        else (time + start >= steady.start) & (time + start <= steady.stop)
+    )
+    part = values[inside]
+    if part.size < 64:
+        return min(lowest, WIDE_BAND)
+    axis, power = welch(part - part.mean(), fs=rate, nperseg=min(part.size, int(8 * rate)), window="hann")
+    floor = float(np.median(power[axis > 0.5 * axis[-1]]))
+    seen = axis[power > ABOVE_NOISE * floor]
+    highest = 1.2 * float(seen[-1]) if seen.size else 0.0
+    return float(min(max(lowest, highest), WIDE_BAND))
+
+
+def _rest_share(time: FloatArray, before: Window | None, after: Window | None) -> FloatArray:
+    """Return 1 inside the rest windows, 0 outside, faded over `FADE`."""
+    share = np.zeros(time.size)
+    for window in (before, after):
+        if window is not None:
+            inside = np.minimum(time - window.start + FADE, window.stop - time) / FADE
+            share = np.maximum(share, np.clip(inside, 0.0, 1.0))
+    return np.asarray(share * share * (3.0 - 2.0 * share))

@@ -1,0 +1,99 @@
+"""Replays with one uncertain rig parameter moved by its standard uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tethertest.records.channel import Channel
+from tethertest.records.rig import Rig
+from tethertest.records.run import Run
+from tethertest.replay.channels import replayed_channels
+from tethertest.replay.motion import BottomMotion
+from tethertest.replay.scene import run_scene
+from tethertest.solver import solve
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Variation:
+    """One parameter moved, and the channels that this replays to."""
+
+    parameter: str  #: key of `Rig.uncertainty`
+    standard_uncertainty: float  #: in SI
+    channels: tuple[Channel, ...]
+
+
+def variations(
+    run: Run, motion: BottomMotion, measured: Sequence[Channel], cells: int, fidelity: str
+) -> tuple[Variation, ...]:
+    """Replay the run once for each uncertain parameter of cable and platform.
+
+    The first entry moves nothing: it is the nominal replay on the same mesh, which the others are held
+    against.
+
+    Parameters
+    ----------
+    run : Run
+        Its rig's `uncertainty` says what is uncertain.
+    motion : BottomMotion
+        Measured bottom displacement.
+    measured : sequence of Channel
+        Give places and times.
+    cells : int
+        Mesh of all of them.
+    fidelity : str
+        "linear" or "nonlinear", as the run's own replay.
+    """
+    names = [name for name in run.rig.uncertainty if _belongs(name, run.file.platform.mode)]
+    return tuple(
+        Variation(name, uncertainty, _replay(run, rig, motion, measured, cells, fidelity))
+        for name, uncertainty, rig in (
+            ("nominal", 0.0, run.rig),
+            *((n, run.rig.uncertainty[n], moved(run.rig, n)) for n in names),
+        )
+    )
+
+
+def moved(rig: Rig, name: str) -> Rig:
+    """Return the rig with one parameter moved up by its standard uncertainty.
+
+    Parameters
+    ----------
+    rig : Rig
+        Its `uncertainty` has the parameter.
+    name : str
+        "cable.length", "platform.mass" or "platform.modes.hold.hover_stiffness".
+    """
+    step = rig.uncertainty[name]
+    table, _, key = name.partition(".")
+    if table == "cable":
+        return replace(rig, cable=_added(rig.cable, key, step))
+    if not key.startswith("modes."):
+        return replace(rig, platform=_added(rig.platform, key, step))
+    _, mode, field = key.split(".")
+    modes = {**rig.platform.modes, mode: _added(rig.platform.modes[mode], field, step)}
+    return replace(rig, platform=replace(rig.platform, modes=modes))
+
+
+def _added(record: Any, field: str, step: float) -> Any:
+    return replace(record, **{field: getattr(record, field) + step})
+
+
+def _belongs(name: str, mode: str) -> bool:
+    if name.startswith("platform.modes."):
+        return name.startswith(f"platform.modes.{mode}.")
+    return name.startswith(("cable.", "platform."))
+
+
+def _replay(
+    run: Run, rig: Rig, motion: BottomMotion, measured: Sequence[Channel], cells: int, fidelity: str
+) -> tuple[Channel, ...]:
+    scene = run_scene(run, motion.duration, rig=rig)
+    response = solve(
+        scene,
+        measured=motion.motion,
+        fidelity="nonlinear" if fidelity == "nonlinear" else "linear",
+        cells=cells,
+    )
+    return replayed_channels(response, motion.start, measured)

@@ -1,0 +1,149 @@
+"""Zero-phase filters and resampling that never invent data across a hole without being asked."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from tethertest.errors import DataError
+from tethertest.signal.series import Floats, Series
+
+Number = TypeVar("Number", np.float64, np.complex128)
+
+#: order of the Butterworth low-pass; run forwards and backwards it counts twice
+ORDER = 2
+#: a low-pass at this fraction of the sampling rate or above would pass everything: it is left out
+NYQUIST_FRACTION = 0.45
+#: a hole in the samples longer than this many sampling intervals is a hole in the resampled series too
+HOLE_INTERVALS = 1.5
+
+
+def filled(series: Series) -> Floats:
+    """Return the values with straight lines across the samples that may not be used.
+
+    Parameters
+    ----------
+    series : Series
+        A channel; its ends are continued with the nearest usable value.
+
+    Returns
+    -------
+    ndarray
+        (n,) values without NaN.
+
+    Raises
+    ------
+    DataError
+        No sample is usable.
+    """
+    usable = series.usable
+    if usable.all():
+        return series.values
+    if not usable.any():
+        message = "a channel has no usable sample"
+        raise DataError(message, "leave the channel out of run.toml or export the log again")
+    return np.interp(series.time, series.time[usable], series.values[usable])
+
+
+def low_passed(values: Floats, rate: float, cutoff: float) -> Floats:
+    """Return uniformly sampled values without what lies above a frequency, without delay.
+
+    Parameters
+    ----------
+    values : ndarray
+        (n,) without NaN; see `filled`.
+    rate, cutoff : float
+        Sampling rate and the frequency of half power [Hz]; from `NYQUIST_FRACTION` of the rate upwards the
+        values are returned as they are.
+
+    Returns
+    -------
+    ndarray
+        (n,)
+
+    Raises
+    ------
+    DataError
+        The cut-off is not above zero.
+    """
+    from scipy.signal import butter, sosfiltfilt
+
+    if not cutoff > 0.0:
+        message = f"low-pass at {cutoff:g} Hz, expected a frequency above zero"
+        raise DataError(message, "give a positive cut-off frequency")
+    if cutoff >= NYQUIST_FRACTION * rate or values.size == 0:
+        return values
+    # forwards and backwards the power halves twice: this keeps half power at the frequency asked for
+    single = cutoff / (np.sqrt(2.0) - 1.0) ** (0.5 / ORDER)
+    sections = butter(ORDER, min(single, NYQUIST_FRACTION * rate), fs=rate, output="sos")
+    padding = min(values.size - 1, round(3.0 * rate / cutoff))
+    return np.asarray(sosfiltfilt(sections, values, padlen=padding), dtype=np.float64)
+
+
+def moving_mean(values: npt.NDArray[Number], length: float) -> npt.NDArray[Number]:
+    """Return centred means over `length` samples, over fewer at the ends.
+
+    Parameters
+    ----------
+    values : ndarray
+        (n,) without NaN, real or complex.
+    length : float
+        Samples per mean, at least 1; a part of a sample counts by its part, so that a mean over whole
+        cycles is one.
+    """
+    half = 0.5 * max(length, 1.0)
+    edges = np.arange(values.size + 1, dtype=np.float64)
+    total = np.concatenate((np.zeros(1, values.dtype), np.cumsum(values)))
+    centre = edges[:-1] + 0.5
+    first, last = np.maximum(centre - half, 0.0), np.minimum(centre + half, float(values.size))
+    means = (np.interp(last, edges, total) - np.interp(first, edges, total)) / (last - first)
+    return np.asarray(means, dtype=values.dtype)
+
+
+def without_line(time: Floats, values: Floats, frequency: float, span: float) -> Floats:
+    """Return values without a line whose amplitude changes slowly, and without delay.
+
+    Parameters
+    ----------
+    time, values : ndarray
+        (n,) uniform times [s] and values without NaN.
+    frequency : float
+        Of the line [Hz].
+    span : float
+        Time over which its amplitude is measured [s]; what is farther than ``1/span`` [Hz] from the line
+        stays.
+    """
+    carrier = np.exp(2j * np.pi * frequency * time)
+    samples = span * (time.size - 1) / (time[-1] - time[0])
+    amplitude = 2.0 * moving_mean(values * np.conj(carrier), samples)
+    return np.asarray(values - (amplitude * carrier).real, dtype=np.float64)
+
+
+def resampled(series: Series, times: Floats) -> Floats:
+    """Return values at other times by straight lines between usable samples.
+
+    Parameters
+    ----------
+    series : Series
+        A channel.
+    times : ndarray
+        (m,) [s] on the channel's clock.
+
+    Returns
+    -------
+    ndarray
+        (m,) values; NaN outside the record and inside holes longer than `HOLE_INTERVALS` sampling intervals.
+    """
+    usable = series.usable
+    time, values = series.time[usable], series.values[usable]
+    if time.size == 0:
+        return np.full(len(times), np.nan)
+    result = np.interp(times, time, values, left=np.nan, right=np.nan)
+    if time.size > 1:
+        after = np.clip(np.searchsorted(time, times, "left"), 1, time.size - 1)
+        hole = time[after] - time[after - 1] > HOLE_INTERVALS / series.rate
+        exact = (times == time[after]) | (times == time[after - 1])
+        result[hole & ~exact] = np.nan
+    return result

@@ -1,0 +1,259 @@
+"""Where a record is at rest and where the drive is steady, found from the motion itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tethertest.signal.filters import filled, moving_mean
+from tethertest.signal.noise import white_noise
+from tethertest.signal.series import Booleans, Floats, Series
+
+Span = tuple[float, float]
+
+#: the record is thinned to means over this time: a tap keeps its length, the rest goes faster [s]
+BLOCK = 0.02
+#: and motion is looked for in medians over this time: taps and the ringing after them (above 10 Hz) drop
+#: out [s]
+LEVEL_LENGTH = 0.5
+#: the level of rest is the median of this much record at its start or end [s]
+LEVEL_SPAN = 2.0
+#: deviation from the level, in standard deviations of such a median, that is motion
+MOTION_SIGMAS = 8.0
+#: standard deviation of a median over that of a mean, for normal noise
+MEDIAN_TO_MEAN = 1.25
+#: or this fraction of the whole motion's amplitude, whichever is more
+MOTION_FRACTION = 0.002
+#: deviations shorter than this are several taps in a row, not the start of the drive [s]
+TAP_SPAN = 0.8
+#: kept away from the motion on the side where it starts or stops [s]
+MARGIN = 0.75
+#: a shorter stretch is no rest window [s]
+SHORTEST_REST = 1.5
+#: cycles over which amplitude and speed are averaged: two, so that a line at half the drive drops out
+CYCLES_AVERAGED = 2
+#: amplitude and speed are settled within these fractions of their medians, speed also within its usual wander
+AMPLITUDE_SETTLED = 0.02
+SPEED_SETTLED = 0.002
+#: the window reaches as far as the motion repeats itself within this fraction of its amplitude
+REPEATS = 0.02
+#: noise and wander may unsettle them by this many of their usual deviations
+SETTLED_SIGMAS = 4.0
+#: a drive whose amplitude is below this many standard deviations of its estimate is none
+DETECTABLE = 8.0
+#: the frequency is first fitted to the strong part of the record, then to the settled one
+PASSES = 3
+#: what is shorter than this many cycles is no steady window
+FEWEST_CYCLES = 3
+#: the drive as found may differ from the nominal one by this fraction
+SPEED_SEARCH = 0.2
+
+
+@dataclass(frozen=True, slots=True)
+class Rest:
+    """Quiet stretches of a record."""
+
+    before: Span | None  #: [s]
+    after: Span | None  #: [s]
+    amplitude: float  #: half the range of the motion, in the series' unit
+    threshold: float  #: deviation from rest that counted as motion
+
+
+@dataclass(frozen=True, slots=True)
+class Steady:
+    """The stretch where the drive is steady."""
+
+    span: Span  #: [s], a whole number of cycles
+    frequency: float  #: [Hz], as found
+    amplitude: float  #: of the drive's order 1, in the series' unit
+    cycles: int
+
+
+def find_rest(series: Series) -> Rest:
+    """Return the quiet stretches before and after the motion.
+
+    Parameters
+    ----------
+    series : Series
+        The bottom displacement, or a tension where there is none. Taps shorter than `TAP_SPAN` do not end a
+        window.
+
+    Returns
+    -------
+    Rest
+        ``before`` and ``after`` are None where the record starts or ends in motion; in a record without
+        motion they are its first and its last third.
+    """
+    time, means, sigma = _thinned(series)
+    count = max(round(LEVEL_LENGTH / BLOCK), 1)
+    levels = _moving_median(means, count)
+    low, high = np.quantile(levels, (0.01, 0.99))
+    amplitude = 0.5 * float(high - low)
+    threshold = max(MOTION_SIGMAS * MEDIAN_TO_MEAN * sigma / np.sqrt(count), MOTION_FRACTION * amplitude)
+    span = max(round(LEVEL_SPAN / BLOCK), 1)
+    moving_first = _moving(time, np.abs(levels - np.median(levels[:span])) > threshold)
+    moving_last = _moving(time, np.abs(levels - np.median(levels[-span:])) > threshold)
+    if not moving_first.any() and not moving_last.any():
+        third = (time[-1] - time[0]) / 3.0
+        return Rest(
+            (float(time[0]), float(time[0] + third)),
+            (float(time[-1] - third), float(time[-1])),
+            amplitude,
+            threshold,
+        )
+    before = (
+        _window(float(time[0]), float(time[np.argmax(moving_first)]) - MARGIN) if moving_first.any() else None
+    )
+    last = time.size - 1 - int(np.argmax(moving_last[::-1]))
+    after = _window(float(time[last]) + MARGIN, float(time[-1])) if moving_last.any() else None
+    return Rest(before, after, amplitude, threshold)
+
+
+def find_steady(series: Series, frequency: float) -> Steady | None:
+    """Return the longest stretch of steady drive, a whole number of cycles long.
+
+    Parameters
+    ----------
+    series : Series
+        The bottom displacement, or a tension where there is none.
+    frequency : float
+        Nominal drive frequency [Hz]; the one found may differ by `SPEED_SEARCH`.
+
+    Returns
+    -------
+    Steady or None
+        None where no stretch of `FEWEST_CYCLES` cycles has settled amplitude and speed.
+    """
+    rate = series.rate
+    time = np.arange(series.time[0], series.time[-1], 1.0 / rate)
+    if time.size < 2 or (time[-1] - time[0]) * frequency < FEWEST_CYCLES:
+        return None
+    values = np.interp(time, series.time, filled(series))
+    noise_level = white_noise(values)
+    noise = noise_level * np.sqrt(2.0 * frequency / (CYCLES_AVERAGED * rate))
+    found = _peak_frequency(values - values.mean(), rate, frequency)
+    strong: Booleans | None = None
+    for _ in range(PASSES):
+        vector = _demodulated(time, values, rate, found)
+        size, phase = np.abs(vector), np.unwrap(np.angle(vector))
+        strong = size > 0.5 * np.max(size) if strong is None else strong
+        amplitude = float(np.median(size[strong]))
+        if amplitude < DETECTABLE * noise:
+            return None
+        found += float(np.polyfit(time[strong], phase[strong], 1)[0]) / (2.0 * np.pi)
+        if abs(found - frequency) > SPEED_SEARCH * frequency:
+            return None
+        settled = _settled(phase, size, strong, amplitude, noise, found / rate)
+        first, last = _longest(settled)
+        if last <= first:
+            return None
+        strong = np.zeros_like(settled)
+        strong[first : last + 1] = True
+    first, last = _extended(
+        values, first, last, round(CYCLES_AVERAGED / found * rate), amplitude, noise_level
+    )
+    start, stop = time[first], time[last]
+    cycles = int((stop - start) * found)
+    if cycles < FEWEST_CYCLES:
+        return None
+    # what is left of a cycle goes at the start, where the transients are
+    return Steady((float(stop - cycles / found), float(stop)), found, amplitude, cycles)
+
+
+def _extended(
+    values: Floats, first: int, last: int, shift: int, amplitude: float, noise: float
+) -> tuple[int, int]:
+    """Return the run of samples that repeat themselves after `shift`, around one known to be settled."""
+    differs = np.abs(values[shift:] - values[:-shift]) > max(
+        REPEATS * amplitude, 2.0 * SETTLED_SIGMAS * noise
+    )
+    before = np.flatnonzero(differs[:first])
+    after = np.flatnonzero(differs[max(last - shift, 0) :])
+    start = int(before[-1]) + 1 if before.size else 0
+    stop = max(last - shift, 0) + int(after[0]) + shift - 1 if after.size else values.size - 1
+    return start, max(stop, last)
+
+
+def _settled(
+    phase: Floats,
+    size: Floats,
+    strong: Booleans,
+    amplitude: float,
+    noise: float,
+    cycles_per_sample: float,
+) -> Booleans:
+    """Return where amplitude and speed of the demodulated drive are settled."""
+    cycle = 1.0 / cycles_per_sample
+    stray = np.abs(_centred_difference(phase, int(0.5 * cycle))) / (2.0 * np.pi)
+    settled = np.abs(size - amplitude) < max(AMPLITUDE_SETTLED * amplitude, SETTLED_SIGMAS * noise)
+    usual = SETTLED_SIGMAS * max(float(np.median(stray[strong])), noise / (2.0 * np.pi * amplitude))
+    settled &= stray < max(SPEED_SETTLED, usual)
+    inside = int(0.5 * CYCLES_AVERAGED * cycle)
+    settled[:inside] = False
+    settled[settled.size - inside :] = False
+    return np.asarray(settled, dtype=bool)
+
+
+def _thinned(series: Series) -> tuple[Floats, Floats, float]:
+    """Return times and means of blocks of `BLOCK` seconds, and the standard deviation of such a mean."""
+    values = filled(series)
+    size = max(round(BLOCK * series.rate), 1)
+    count = max(values.size // size, 1)
+    means = values[: count * size].reshape(count, -1).mean(axis=1)
+    centres = series.time[: count * size].reshape(count, -1).mean(axis=1)
+    return centres, means, white_noise(values) / np.sqrt(size)
+
+
+def _moving_median(values: Floats, length: int) -> Floats:
+    """Return centred medians over about `length` values, the ends continued with the nearest value."""
+    half = length // 2
+    padded = np.pad(values, half, mode="edge")
+    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1), axis=1))
+
+
+def _moving(time: Floats, away: Booleans) -> Booleans:
+    """Return the mask without excursions too short to be the drive."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], away, [False])).astype(np.int8)))
+    moving = np.zeros_like(away)
+    for first, last in zip(edges[::2], edges[1::2] - 1, strict=True):
+        if time[last] - time[first] > TAP_SPAN:
+            moving[first : last + 1] = True
+    return moving
+
+
+def _window(start: float, stop: float) -> Span | None:
+    return (start, stop) if stop - start >= SHORTEST_REST else None
+
+
+def _peak_frequency(values: Floats, rate: float, nominal: float) -> float:
+    """Return the frequency of the largest line near the nominal one."""
+    spectrum = np.abs(np.fft.rfft(values * np.hanning(values.size), 4 * values.size))
+    frequencies = np.fft.rfftfreq(4 * values.size, 1.0 / rate)
+    near = np.abs(frequencies - nominal) < SPEED_SEARCH * nominal
+    return float(frequencies[near][np.argmax(spectrum[near])]) if near.any() else nominal
+
+
+def _demodulated(time: Floats, values: Floats, rate: float, frequency: float) -> npt.NDArray[np.complex128]:
+    """Return the complex amplitude at a frequency over `CYCLES_AVERAGED` cycles."""
+    carrier = np.exp(-2j * np.pi * frequency * time)
+    length = CYCLES_AVERAGED / frequency * rate
+    centred = values - moving_mean(values, length)
+    return np.asarray(2.0 * moving_mean(centred * carrier, length), dtype=np.complex128)
+
+
+def _centred_difference(values: Floats, half: int) -> Floats:
+    """Return ``values[i + half] - values[i - half]``, with the ends repeated."""
+    index = np.arange(values.size)
+    return values[np.minimum(index + half, values.size - 1)] - values[np.maximum(index - half, 0)]
+
+
+def _longest(mask: Booleans) -> tuple[int, int]:
+    """Return first and last index of the longest run of True, or (0, 0)."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
+    if not edges.size:
+        return 0, 0
+    lengths = edges[1::2] - edges[::2]
+    longest = int(np.argmax(lengths))
+    return int(edges[2 * longest]), int(edges[2 * longest + 1]) - 1

@@ -69,7 +69,7 @@ def finished(
         else:
             changed, found = zeroed(channel, before, None if before else after, 0.0, np.inf)
         findings += found
-        result.append(replace(changed, noise=white_noise(filled(changed)) if changed.usable.any() else 0.0))
+        result.append(replace(changed, noise=_noise(changed)))
     return tuple(result), tuple(findings)
 
 
@@ -114,3 +114,10 @@ def _strain(
     before, after = _levels(strain, windows)
     tared, drifted = zeroed(strain, before, after, 0.0, STRAIN_DRIFT)
     return tared, (*found, *drifted)
+
+
+def _noise(channel: Channel) -> float:
+    """Return the standard deviation of one sample; none for a temperature, which is smoothed."""
+    if channel.kind == "temperature" or not channel.usable.any():
+        return 0.0
+    return white_noise(filled(channel))

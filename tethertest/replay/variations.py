@@ -30,7 +30,7 @@ def variations(
     """Replay the run once for each uncertain parameter of cable and platform.
 
     The first entry moves nothing: it is the nominal replay on the same mesh, which the others are held
-    against.
+    against, and on a mesh coarser than the run's own it tells the mesh's share of the error.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from tethertest.records.rig import Rig, Sensor
 from tethertest.signal.filters import filled, low_passed
 
 #: the temperature of cable and air changes slowly: what is faster in its grating is noise [Hz]
-TEMPERATURE_CUTOFF = 0.2
+TEMPERATURE_CUTOFF = 0.05
 
 
 def temperature_of(channel: Channel, sensor: Sensor, rest: float) -> Channel:

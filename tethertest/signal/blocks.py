@@ -53,7 +53,7 @@ class Blocks:
         half_angle = np.pi * frequency * self.interval
         # mean of equally spaced phasors: Dirichlet's kernel
         gain = np.sin(self.width * half_angle) / (self.width * np.sin(half_angle)) if half_angle else 1.0
-        means = np.exp(2j * np.pi * frequency * (self.time - origin))
+        means: npt.NDArray[np.complex128] = np.exp(2j * np.pi * frequency * (self.time - origin))
         means *= np.where(self.weights > 0.0, gain, 0.0)
         if self.irregular.size:
             rotating = np.exp(2j * np.pi * frequency * (self.samples - origin))

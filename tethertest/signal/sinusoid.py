@@ -65,7 +65,7 @@ class SinusoidFit:
             Of the noise of one full block; estimated from the residuals when absent.
         """
         if variance is None:
-            freedom = np.count_nonzero(self.weights) - self.coefficients.size
+            freedom = int(np.count_nonzero(self.weights)) - self.coefficients.size
             variance = float(self.weights @ self.residuals**2) / max(1, freedom)
         return variance * self.inverse
 
@@ -119,7 +119,7 @@ def fit_sinusoids(
         message = f"{np.count_nonzero(blocks.weights)} blocks for {design.shape[1]} coefficients"
         raise ValueError(message)
     weighted = design * blocks.weights[:, None]
-    inverse = np.linalg.inv(design.T @ weighted)
+    inverse = np.asarray(np.linalg.inv(design.T @ weighted), dtype=np.float64)
     coefficients = inverse @ (weighted.T @ blocks.values)
     residuals = np.where(blocks.weights > 0.0, blocks.values - design @ coefficients, 0.0)
     return SinusoidFit(

@@ -38,7 +38,10 @@ CYCLES_AVERAGED = 2
 AMPLITUDE_SETTLED = 0.02
 SPEED_SETTLED = 0.002
 #: the window reaches as far as the motion repeats itself within this fraction of its amplitude
-REPEATS = 0.02
+REPEATS = 0.01
+#: and stays away from where it stops doing so by this share of `CYCLES_AVERAGED` cycles, or this time [s] if
+#: that is longer: ramps set in smoothly
+KEPT_AWAY, SHORTEST_AWAY = 0.125, 1.0
 #: noise and wander may unsettle them by this many of their usual deviations
 SETTLED_SIGMAS = 4.0
 #: a drive whose amplitude is below this many standard deviations of its estimate is none
@@ -151,9 +154,7 @@ def find_steady(series: Series, frequency: float) -> Steady | None:
             return None
         strong = np.zeros_like(settled)
         strong[first : last + 1] = True
-    first, last = _extended(
-        values, first, last, round(CYCLES_AVERAGED / found * rate), amplitude, noise_level
-    )
+    first, last = _extended(values, first, last, CYCLES_AVERAGED / found * rate, amplitude, noise_level, rate)
     start, stop = time[first], time[last]
     cycles = int((stop - start) * found)
     if cycles < FEWEST_CYCLES:
@@ -163,16 +164,18 @@ def find_steady(series: Series, frequency: float) -> Steady | None:
 
 
 def _extended(
-    values: Floats, first: int, last: int, shift: int, amplitude: float, noise: float
+    values: Floats, first: int, last: int, period: float, amplitude: float, noise: float, rate: float
 ) -> tuple[int, int]:
-    """Return the run of samples that repeat themselves after `shift`, around one known to be settled."""
-    differs = np.abs(values[shift:] - values[:-shift]) > max(
-        REPEATS * amplitude, 2.0 * SETTLED_SIGMAS * noise
-    )
+    """Return the run of samples that repeat themselves after `period`, around one known to be settled."""
+    shift = int(np.ceil(period))
+    index = np.arange(values.size, dtype=np.float64)
+    later = np.interp(index[:-shift] + period, index, values)
+    differs = np.abs(later - values[:-shift]) > max(REPEATS * amplitude, 2.0 * SETTLED_SIGMAS * noise)
     before = np.flatnonzero(differs[:first])
     after = np.flatnonzero(differs[max(last - shift, 0) :])
-    start = int(before[-1]) + 1 if before.size else 0
-    stop = max(last - shift, 0) + int(after[0]) + shift - 1 if after.size else values.size - 1
+    away = round(max(KEPT_AWAY * period, SHORTEST_AWAY * rate))
+    start = int(before[-1]) + 1 + away if before.size else 0
+    stop = max(last - shift, 0) + int(after[0]) + shift - 1 - away if after.size else values.size - 1
     return start, max(stop, last)
 
 

@@ -1,0 +1,1 @@
+"""Figures of the page, one family a file; drawn without matplotlib's global state."""

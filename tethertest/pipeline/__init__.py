@@ -1,1 +1,1 @@
-"""pipeline."""
+"""One function per job; the only modules that know the order of things."""

@@ -97,8 +97,8 @@ def bottom_motion(
 def _passed(values: FloatArray, rate: float, cutoff: float) -> FloatArray:
     """Return the values with all up to `cutoff` [Hz] untouched and nothing from 1.5 times it upwards.
 
-    A flat pass band matters: a Butterworth filter with half power there would take 4 % off the second order of
-    a drive at a quarter of it.
+    A flat pass band matters: a Butterworth filter with half power there would take 4 % off the second order
+    of a drive at a quarter of it.
     """
     from scipy.signal import fftconvolve, firwin, kaiserord
 

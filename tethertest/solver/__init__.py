@@ -2,6 +2,6 @@
 
 from tethertest.solver.modes import modes
 from tethertest.solver.rest import RestState, rest_state
-from tethertest.solver.solve import Fidelity, relative_difference, solve
+from tethertest.solver.solve import MESHES, Fidelity, relative_difference, solve
 
-__all__ = ["Fidelity", "RestState", "modes", "relative_difference", "rest_state", "solve"]
+__all__ = ["MESHES", "Fidelity", "RestState", "modes", "relative_difference", "rest_state", "solve"]

@@ -78,6 +78,10 @@ def solve(
     if float(np.min(response.field.minimum)) <= 0.0:
         if scene.air is None:
             warnings.append("the cable goes slack and the scene has no air drag: peaks may be far too high")
+        warnings.append(
+            "the cable goes slack: this replay moves along the cable only, a slack cable also bows sideways, "
+            "and its peaks may be off by tens of percent"
+        )
         if scene.cable.axial_damping_time is None:
             spread = _damping_spread(scene, measured)
     return replace(

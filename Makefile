@@ -1,0 +1,38 @@
+# Two commands serve a fresh machine (Python 3.11+, make, pip): `make report` and `make test`.
+PYTHON ?= python3
+BIN := .venv/bin
+RUN ?= datasets/rig3m/run04
+JOBS ?= 2
+
+.PHONY: setup report test verify bench lint schema
+.DEFAULT_GOAL := report
+
+setup: .venv/.ready  ## a virtual environment with the tested versions
+
+.venv/.ready: requirements.lock pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --editable .
+	touch $@
+
+report: setup  ## the main job on one run: reports/<run>/report.html
+	$(BIN)/tethertest report $(RUN)
+
+test: setup  ## the tests
+	$(BIN)/python -m pytest -n $(JOBS) -m "not browser and not verify"
+
+verify: setup  ## every run of the campaign against its truth, and the long batteries
+	$(BIN)/python -m pytest -m verify
+	$(BIN)/python datasets/check_rig3m.py
+
+bench: setup  ## timings of whole processes
+	$(BIN)/python tests/benchmarks/whole_processes.py
+
+lint: setup  ## style, types, layers
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+schema: setup  ## write the JSON schemas of run, rig, prototype and scene files
+	for kind in run rig prototype scene; do $(BIN)/tethertest schema $$kind > rigs/schema/$$kind.schema.json; done

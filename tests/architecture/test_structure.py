@@ -1,0 +1,37 @@
+"""Rules of the house that no other tool checks."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+LONGEST_FILE = 400
+SOURCES = sorted(
+    path for folder in ("tethertest", "datasets", "tests") for path in (ROOT / folder).rglob("*.py")
+)
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_no_file_is_longer_than_four_hundred_lines(path: Path) -> None:
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE
+
+
+def test_median_file_stays_small() -> None:
+    lengths = sorted(len(path.read_text(encoding="utf-8").splitlines()) for path in SOURCES)
+    assert lengths[len(lengths) // 2] <= 160
+
+
+def test_the_pipeline_never_opens_the_truth() -> None:
+    package = [path for path in SOURCES if path.is_relative_to(ROOT / "tethertest")]
+    assert not [path for path in package if "truth" in path.read_text(encoding="utf-8").lower()]
+
+
+def test_help_needs_no_heavy_package() -> None:
+    heavy = ("numba", "scipy", "pandas", "pint", "matplotlib", "pydantic", "jinja2")
+    code = f"import sys, tethertest.cli; print([m for m in {heavy} if m in sys.modules])"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert said.stdout.strip() == "[]"

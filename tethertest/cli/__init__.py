@@ -1,0 +1,50 @@
+"""The command line: one file per command, no maths.
+
+Exit codes: 0 pass, 1 fail, 2 bad input, 3 a fault of the program, 4 undecided.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from tethertest.cli.inspect import inspect
+from tethertest.cli.report import report
+from tethertest.cli.scale import scale
+from tethertest.cli.schema import schema
+from tethertest.cli.version import show_version
+from tethertest.errors import TethertestError
+
+BAD_INPUT = 2
+PROGRAM_FAULT = 3
+
+app = typer.Typer(
+    name="tethertest",
+    help="Experiment-data analysis and similitude for ship-borne tethered UAVs.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.callback()(show_version)
+for command in (report, inspect, scale, schema):
+    app.command()(command)
+
+
+def main() -> None:
+    """Run the command line; a user's mistake is one message and exit code 2, never a traceback."""
+    try:
+        app()
+    except TethertestError as error:
+        sys.stderr.write(f"error: {error}\n")
+        raise SystemExit(BAD_INPUT) from None
+    except (KeyboardInterrupt, BrokenPipeError):
+        raise SystemExit(130) from None
+    except Exception:
+        import traceback
+
+        traceback.print_exc()
+        sys.stderr.write(
+            "\nThis is a fault of tethertest, not of your files: please report it with the lines above.\n"
+        )
+        raise SystemExit(PROGRAM_FAULT) from None

@@ -1,0 +1,5 @@
+"""``python -m tethertest.cli``."""
+
+from tethertest.cli import main
+
+main()

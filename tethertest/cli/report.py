@@ -1,0 +1,43 @@
+"""``tethertest report``: the main job."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EXIT_CODES = {"pass": 0, "fail": 1, "undecided": 4}
+
+
+def report(
+    run: Annotated[Path, typer.Argument(help="Run folder with run.toml and raw logs.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder of the report [reports/RUN].")
+    ] = None,
+    rigs: Annotated[
+        Path | None, typer.Option(help="Folder of rig files [found upwards from the run].")
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object on standard output.")
+    ] = False,
+) -> None:
+    """Replay a run and write its validation report: page, figures, summary and verdict.
+
+    Exit code 0 pass, 1 fail, 2 bad input, 3 fault of the program, 4 undecided.
+    """
+    from tethertest.pipeline.report import make_report
+    from tethertest.render import summary, write_report
+
+    folder = Path("reports") / run.resolve().name if output is None else output
+    made = make_report(run, rigs)
+    paths = write_report(made, folder)
+    verdict = made.comparison.verdict.value
+    if as_json:
+        content = {**summary(made), "paths": [str(path) for path in paths]}
+        typer.echo(json.dumps(content, ensure_ascii=False, allow_nan=False))
+    else:
+        reason = made.comparison.reasons[0] if made.comparison.reasons else ""
+        typer.echo(f"{verdict.upper()}  {made.run.file.id}: {reason}  ->  {paths[0]}")
+    raise typer.Exit(EXIT_CODES[verdict])

@@ -127,7 +127,6 @@ def _replay(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> _Repl
         heave,
         frequency=None if drive is None else drive.frequency,
         rest_before=measured.rest_before,
-        rest_after=measured.rest_after,
         steady=measured.steady,
     )
     scene = run_scene(run, motion.duration)
@@ -193,6 +192,6 @@ def _settings(replayed: _Replay | None) -> dict[str, str]:
     if replayed is None:
         return {}
     return {
-        "motion cut-off while driven": f"{replayed.motion.cutoff:.4g} Hz",
-        "motion cut-off at rest": f"{replayed.motion.wide_cutoff:.4g} Hz",
+        "motion cut-off": f"{replayed.motion.cutoff:.4g} Hz",
+        "motion cut-off where sudden": f"{replayed.motion.wide_cutoff:.4g} Hz",
     }

@@ -52,7 +52,7 @@ def expected_bottom_tension(run: Run) -> Callable[[Channel], Channel]:
     """
 
     def answer(heave: Channel) -> Channel:
-        motion = bottom_motion(heave, frequency=None, rest_before=None)
+        motion = bottom_motion(heave, frequency=run.file.drive.frequency)
         response = solve(
             run_scene(run, motion.duration),
             measured=motion.motion,

@@ -2,8 +2,7 @@
 
 A stiff cable turns a hundredth of a millimetre of encoder noise into tenths of a newton of ringing at its
 axial resonance. So the drive is kept up to the highest frequency at which the encoder sees more than its own
-noise, and the wide band is kept only where something sudden happened: in the rest windows, where the marker
-taps are.
+noise, and the wide band is kept only where something sudden happened, as at the marker taps.
 """
 
 from __future__ import annotations
@@ -13,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from tethertest.errors import DataError
-from tethertest.records.arrays import FloatArray
+from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Window
 from tethertest.records.scene import MeasuredMotion
 from tethertest.signal.filters import filled
 
-#: band kept in the rest windows [Hz]; a marker tap of 60 ms has little above it
+#: band kept where something sudden happens [Hz]; a marker tap of 60 ms has little above it
 WIDE_BAND = 40.0
 #: orders of the drive that are always kept; a crank-slider's fourth is a thousandth of its first
 KEPT_ORDERS = 3.5
@@ -28,8 +27,12 @@ LOWEST_CUTOFF = 2.0
 ABOVE_NOISE = 30.0
 #: width of the transition band over the cut-off, and the ripple of the pass band [dB below 1]
 TRANSITION, RIPPLE = 0.5, 80.0
-#: time over which the bands are faded into each other, and the record into rest at its ends [s]
-FADE = 0.3
+#: motion outside the drive's band is sudden when it stands out of the noise by this factor
+SUDDEN_SIGMAS = 8.0
+#: and keeps the wide band this far around it [s], faded in and out over `FADE` [s]
+SUDDEN_REACH, FADE = 0.15, 0.1
+#: standard deviation of a normal variable over the median of its absolute value
+DEVIATION_OF_MEDIAN = 1.4826
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,8 +41,8 @@ class BottomMotion:
 
     start: float  #: run time of the motion's time zero [s]
     motion: MeasuredMotion
-    cutoff: float  #: [Hz], band kept while the drive runs
-    wide_cutoff: float  #: [Hz], band kept in the rest windows
+    cutoff: float  #: [Hz], band kept of the drive
+    wide_cutoff: float  #: [Hz], band kept where something sudden happens
 
     @property
     def duration(self) -> float:
@@ -51,8 +54,7 @@ def bottom_motion(
     heave: Channel,
     *,
     frequency: float | None,
-    rest_before: Window | None,
-    rest_after: Window | None = None,
+    rest_before: Window | None = None,
     steady: Window | None = None,
 ) -> BottomMotion:
     """Return the measured bottom displacement as the solver takes it.
@@ -62,8 +64,8 @@ def bottom_motion(
     heave : Channel
         Bottom displacement [m].
     frequency : float or None
-        Drive frequency [Hz]; None keeps the wide band everywhere.
-    rest_before, rest_after, steady : Window or None
+        Drive frequency [Hz]; None where there is no drive.
+    rest_before, steady : Window or None
         Windows of the run; displacement counts from the rest before the drive.
 
     Raises
@@ -82,16 +84,14 @@ def bottom_motion(
     at_rest = time < 1.0 if rest_before is None else time <= rest_before.stop - start
     values = values - float(np.median(values[at_rest])) if at_rest.any() else values - values[0]
 
-    wide = _passed(values, rate, WIDE_BAND)
-    cutoff = WIDE_BAND
-    if frequency is not None:
-        cutoff = _drive_band(values, rate, frequency, time, start, steady)
-        narrow = _passed(values, rate, cutoff)
-        share = _rest_share(time + start, rest_before, rest_after)
-        wide = share * wide + (1.0 - share) * narrow
+    cutoff = _drive_band(values, rate, frequency, time + start, steady)
+    sudden = _sudden(values - _passed(values, rate, cutoff), rate)
+    calm = values if sudden.all() else np.interp(time, time[~sudden], values[~sudden])
+    share = _faded(sudden, rate)
+    smooth = share * _passed(values, rate, WIDE_BAND) + (1.0 - share) * _passed(calm, rate, cutoff)
     fade_in = np.clip(time / FADE, 0.0, 1.0)
-    wide = wide * fade_in**2 * (3.0 - 2.0 * fade_in)
-    return BottomMotion(start, MeasuredMotion(time, np.asarray(wide)), cutoff, WIDE_BAND)
+    smooth = smooth * fade_in**2 * (3.0 - 2.0 * fade_in)
+    return BottomMotion(start, MeasuredMotion(time, np.asarray(smooth)), cutoff, WIDE_BAND)
 
 
 def _passed(values: FloatArray, rate: float, cutoff: float) -> FloatArray:
@@ -114,20 +114,17 @@ def _passed(values: FloatArray, rate: float, cutoff: float) -> FloatArray:
 
 
 def _drive_band(
-    values: FloatArray, rate: float, frequency: float, time: FloatArray, start: float, steady: Window | None
+    values: FloatArray, rate: float, frequency: float | None, time: FloatArray, steady: Window | None
 ) -> float:
     """Return the cut-off [Hz] that keeps what the encoder sees above its own noise in the steady window."""
     from scipy.signal import welch
 
-    lowest = max(LOWEST_CUTOFF, KEPT_ORDERS * frequency)
-    inside = (
-        np.ones(time.size, dtype=bool)
-        if steady is None
-        else (time + start >= steady.start) & (time + start <= steady.stop)
-    )
-    part = values[inside]
+    lowest = min(max(LOWEST_CUTOFF, KEPT_ORDERS * (frequency or 0.0)), WIDE_BAND)
+    if steady is None:
+        return lowest
+    part = values[(time >= steady.start) & (time <= steady.stop)]
     if part.size < 64:
-        return min(lowest, WIDE_BAND)
+        return lowest
     axis, power = welch(part - part.mean(), fs=rate, nperseg=min(part.size, int(8 * rate)), window="hann")
     floor = float(np.median(power[axis > 0.5 * axis[-1]]))
     seen = axis[power > ABOVE_NOISE * floor]
@@ -135,11 +132,17 @@ def _drive_band(
     return float(min(max(lowest, highest), WIDE_BAND))
 
 
-def _rest_share(time: FloatArray, before: Window | None, after: Window | None) -> FloatArray:
-    """Return 1 inside the rest windows, 0 outside, faded over `FADE`."""
-    share = np.zeros(time.size)
-    for window in (before, after):
-        if window is not None:
-            inside = np.minimum(time - window.start + FADE, window.stop - time) / FADE
-            share = np.maximum(share, np.clip(inside, 0.0, 1.0))
-    return np.asarray(share * share * (3.0 - 2.0 * share))
+def _sudden(rough: FloatArray, rate: float) -> BoolArray:
+    """Return where motion outside the drive's band stands out of the noise, and what lies next to it."""
+    level = DEVIATION_OF_MEDIAN * float(np.median(np.abs(rough)))
+    far = (np.abs(rough) > SUDDEN_SIGMAS * level).astype(np.float64)
+    reach = 2 * max(1, round(SUDDEN_REACH * rate)) + 1
+    return np.convolve(far, np.ones(reach), mode="same") > 0.5
+
+
+def _faded(mask: BoolArray, rate: float) -> FloatArray:
+    """Return 1 where the mask is true, smoothly down to 0 within `FADE` inside its edges."""
+    length = 2 * max(1, round(0.5 * FADE * rate)) + 1
+    kernel = np.hanning(length + 2)[1:-1]
+    padded = np.pad(mask.astype(np.float64), length // 2, mode="edge")
+    return np.asarray(np.convolve(padded, kernel / kernel.sum(), mode="valid"))

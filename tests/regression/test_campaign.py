@@ -56,6 +56,8 @@ def test_f_over_two_of_the_drive_is_told_from_a_true_period_two() -> None:
 
     assert verdict_of_half_order(borne) == "input_borne"
     assert verdict_of_half_order(made) == "subharmonic"
+    assert any("moves along the cable only" in reason for reason in made.comparison.reasons)
+    assert not any("moves along the cable only" in reason for reason in borne.comparison.reasons)
 
 
 def test_a_lost_grating_blanks_itself_and_moves_no_other() -> None:

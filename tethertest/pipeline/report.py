@@ -84,6 +84,9 @@ def make_report(folder: Path, rigs: Path | None = None) -> Report:
         variations=replayed.moved if replayed else (),
         static=rest_tensions(run.rig),
     )
+    if replayed is not None:
+        first, *others = comparison.reasons
+        comparison = replace(comparison, reasons=(first, *replayed.response.warnings, *others))
     return Report(
         run=run,
         measured=measured,

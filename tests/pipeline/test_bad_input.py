@@ -121,6 +121,24 @@ def channel_not_in_the_log(run: Path) -> None:
     edit(run / "run.toml", replace("F_top =", "F_tap ="))
 
 
+def encoder_in_metres(run: Path) -> None:
+    edit(run / "crank.csv", replace("heave [mm]", "heave [m]"))
+
+
+def dead_load_cell(run: Path) -> None:
+    def blank(text: str) -> str:
+        head, values = text.split("X_Value", 1)
+        names, *rows = values.splitlines()
+        rows = ["\t".join([row.split("\t")[0], "NaN", row.split("\t")[2]]) for row in rows if row]
+        return "\n".join([f"{head}X_Value{names}", *rows, ""])
+
+    edit(run / "tension.lvm", blank)
+
+
+def limit_without_percent(run: Path) -> None:
+    edit(run.parent / "rigs" / "rig3m.toml", replace('peak_tension = "10 %"', "peak_tension = 10"))
+
+
 CASES: dict[Callable[[Path], None], str] = {
     missing_log: r"crank\.csv.*no such file",
     empty_log: r"fbg\.txt.*empty",
@@ -138,6 +156,9 @@ CASES: dict[Callable[[Path], None], str] = {
     unknown_mode: r"sotf.*soft",
     path_out_of_the_folder: r"inside the run folder",
     channel_not_in_the_log: r"F_tap.*F_top",
+    encoder_in_metres: r"crank\.csv.*'heave', logged as m, lies beyond its range",
+    dead_load_cell: r"tension\.lvm: no sample of 'tension_top' can be used.*missing",
+    limit_without_percent: r"rig3m\.toml:\d+: limits\.peak_tension.*at most 1",
 }
 
 
@@ -190,6 +211,15 @@ def test_an_output_folder_that_is_a_file_is_refused(
     assert report(run, output, monkeypatch) == 2
     assert "fix: " in capsys.readouterr().err
     assert output.read_text(encoding="utf-8") == "mine"
+
+
+def test_the_run_folder_is_no_output_folder(
+    run: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = sorted(run.iterdir())
+    assert report(run, run, monkeypatch) == 2
+    assert "raw data only" in capsys.readouterr().err
+    assert sorted(run.iterdir()) == before
 
 
 def test_an_output_folder_that_cannot_be_made_is_refused(

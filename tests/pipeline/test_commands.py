@@ -83,6 +83,19 @@ def test_scale_prints_groups_ratios_and_conflicts(
     assert "Ae/L" in out
 
 
+@pytest.mark.parametrize(
+    ("option", "text"),
+    [("--frequency", "0 Hz"), ("--frequency", "-1 Hz"), ("--frequency", "1e300 Hz"), ("--amplitude", "0 m")],
+)
+def test_scale_refuses_a_drive_that_is_none(
+    option: str, text: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rig = str(ROOT / "rigs" / "rig3m.toml")
+    code, out, err = typed(["scale", rig, option, text, "--json"], monkeypatch, capsys)
+    assert (code, out) == (2, "")
+    assert err.startswith(f"error: {option}: found '{text}'")
+
+
 @pytest.mark.parametrize("kind", ["run", "rig", "prototype", "scene"])
 def test_schema_prints_a_json_schema(
     kind: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

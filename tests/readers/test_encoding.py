@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
 from tethertest.readers.encoding import detect_encoding
 
@@ -62,3 +63,9 @@ def test_a_byte_that_turns_up_after_the_beginning(write):
     log = read_log(write(data))
     assert log.encoding == "cp1252"
     assert log.channels[0].values.size == 20001
+
+
+def test_a_codec_that_is_not_for_text_is_refused(write, settings):
+    path = write("time [s];heave [mm]\n0;1\n1;2\n")
+    with pytest.raises(FileFormatError, match="idna"):
+        read_log(path, settings(encoding="idna"))

@@ -135,3 +135,9 @@ def test_counts_that_a_spreadsheet_has_lost(write):
 def test_no_peak_at_all(write):
     with pytest.raises(FileFormatError, match="no peak in any of them"):
         read_log(write(peaks(rows=((0, 0),) * 3)))
+
+
+def test_a_grating_that_was_never_seen_is_still_a_wavelength(write):
+    lost = SENSORS.replace("1522.4686", "").replace("1522.4702", "0.0000")
+    log = read_log(write(BOM + lost.encode()))
+    assert [channel.unit for channel in log.channels] == ["nm", "nm", ""]

@@ -104,3 +104,12 @@ def test_a_file_without_data_is_refused(write):
 def test_the_start_is_shown_in_the_zone_of_the_settings(write, settings):
     log = read_log(write(content(waveform("G", "F", np.arange(3.0))), "t.tdms"), settings(time_zone="+08:00"))
     assert log.start.isoformat() == "2026-09-05T14:20:00.250000+08:00"
+
+
+def test_a_cut_file_is_one_message_and_nothing_of_the_library(write, caplog):
+    data = content(waveform("G", "F", np.arange(1000.0)))
+    with pytest.raises(FileFormatError, match="cut"):
+        read_log(write(data[: len(data) // 2], "t.tdms"))
+    with pytest.raises(FileFormatError, match="empty or was cut"):
+        read_log(write(data[:100], "t.tdms"))
+    assert not caplog.records

@@ -27,10 +27,14 @@ def report(
 
     Exit code 0 pass, 1 fail, 2 bad input, 3 fault of the program, 4 undecided.
     """
+    from tethertest.errors import TethertestError
     from tethertest.pipeline.report import make_report
     from tethertest.render import summary, write_report
 
     folder = Path("reports") / run.resolve().name if output is None else output
+    if folder.resolve() == run.resolve():
+        message = "the output folder is the run folder, which holds raw data only"
+        raise TethertestError(message, f"choose another one, such as {run / 'report'}", path=folder)
     made = make_report(run, rigs)
     paths = write_report(made, folder)
     verdict = made.comparison.verdict.value

@@ -37,11 +37,6 @@ class Pair:
     noise: float  #: standard deviation of the low-passed measurement's noise
     peak_noise: float  #: standard deviation of a measured mean over 20 ms
 
-    @property
-    def unusable_share(self) -> float:
-        """Share of the measured samples that do not count."""
-        return 1.0 - float(np.mean(self.usable))
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Band:

@@ -19,7 +19,7 @@ from tethertest.compare.metrics import (
 )
 from tethertest.compare.subject import Subject, paired, undecided
 from tethertest.compare.verdict import overall, without_drive
-from tethertest.records.channel import Channel, ConditionedRun
+from tethertest.records.channel import Channel, ConditionedRun, Window
 from tethertest.records.comparison import Comparison, Metric
 from tethertest.records.lines import ChannelLines
 from tethertest.records.rig import Limits
@@ -30,6 +30,8 @@ from tethertest.spectra.events import ZERO_UNCERTAINTY
 LIMITED_KIND: Final = "tension"
 #: kinds that are compared for information
 INFORMATIVE_KIND: Final = "strain"
+#: kind of the channel that drives the replay
+MOTION_KIND: Final = "displacement"
 #: standard deviation of a normal variable over the median of its absolute deviation
 DEVIATION_OF_MEDIAN: Final = 1.4826
 #: channels that are reported even where a run lacks them
@@ -79,10 +81,15 @@ def compare(
     names += [name for name in LIMITED_CHANNELS if name not in names]
     drive = _drive_frequency(measured_lines)
     if measured.steady is None or drive is None:
-        reason = f"no drive: {_missing(measured, drive)}; noise floor {_noise_floor(measured)}"
-        metrics = [metric for name in names for metric in _all_undecided(measured, name, limits, reason)]
-        return without_drive(metrics, measured.findings, reason)
-    metrics, unusable = [], {}
+        reason = f"{_missing(measured, drive)}; noise floor {_noise_floor(measured)}"
+        open_ones = [metric for name in names for metric in _all_undecided(measured, name, limits, reason)]
+        return without_drive(open_ones, measured.findings, reason)
+    metrics: list[Metric] = []
+    unusable = {
+        channel.name: _unusable_share(channel, measured.steady)
+        for channel in measured.channels
+        if channel.kind == MOTION_KIND
+    }
     for name in names:
         subject = _subject(
             measured,
@@ -98,7 +105,7 @@ def compare(
             metrics += _all_undecided(measured, name, limits, subject)
             continue
         if subject.limited:
-            unusable[name] = subject.pair.unusable_share
+            unusable[name] = _unusable_share(subject.measured, subject.window)
             metrics.append(peak_metric(subject))
         metrics += order_metrics(subject)
         metrics += sprague_geers_metrics(subject)
@@ -164,6 +171,12 @@ def _all_undecided(measured: ConditionedRun, name: str, limits: Limits, reason: 
     return [undecided(metric, name, unit, limit, reason) for metric, unit, limit in rows]
 
 
+def _unusable_share(channel: Channel, window: Window) -> float:
+    """Return the share of a window without a usable sample of the channel; rows never logged count."""
+    count = np.count_nonzero(channel.between(window.start, window.stop).usable)
+    return max(0.0, 1.0 - count / (channel.rate * window.length)) if channel.rate else 1.0
+
+
 def _drive_frequency(lines: Sequence[ChannelLines]) -> float | None:
     for channel_lines in lines:
         line = channel_lines.line("1")
@@ -173,9 +186,11 @@ def _drive_frequency(lines: Sequence[ChannelLines]) -> float | None:
 
 
 def _missing(measured: ConditionedRun, drive: float | None) -> str:
+    if not any(channel.kind == MOTION_KIND for channel in measured.channels):
+        return "the bottom motion was not logged, so nothing was replayed; add the encoder's log to run.toml"
     if measured.steady is None:
-        return "the run has no steady window"
-    return "no line of the drive was fitted" if drive is None else ""
+        return "no drive: the run has no steady window"
+    return "no drive: no line of it was fitted" if drive is None else ""
 
 
 def _noise_floor(measured: ConditionedRun) -> str:

@@ -181,7 +181,10 @@ def _unplaced(
 
 
 def _remedy(clock: str) -> str:
-    return f"set [override.clock_offset] {clock}, or knock on the base at rest before and after the next run"
+    return (
+        f"look for a wrong unit, sign, sensor or platform mode; else set [override.clock_offset] {clock}, "
+        "or knock on the base at rest before and after the next run"
+    )
 
 
 def _judged(clock: str, coarse: Coarse, line: Line, believable: float) -> tuple[Finding, ...]:

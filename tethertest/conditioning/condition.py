@@ -14,6 +14,7 @@ from tethertest.conditioning.hum import with_hum_flagged
 from tethertest.conditioning.load_cells import calibrated
 from tethertest.conditioning.logged import LoggedChannels, as_logged
 from tethertest.conditioning.plateaus import with_plateaus_flagged
+from tethertest.conditioning.plausible import check_alive, check_ranges, check_rate, hole_findings
 from tethertest.conditioning.rest import windows_of
 from tethertest.conditioning.sensors import finished
 from tethertest.conditioning.spikes import with_spikes_flagged
@@ -55,13 +56,24 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
         Names, units, stamps, calibration or windows are wrong in a way that only a person can mend.
     """
     opened = [_opened(run, entry.file, logs) for entry in run.file.log]
+    for channel in (channel for item in opened for channel in item.channels):
+        check_rate(channel, run.rig)
+        check_alive(channel)
     _check_sensors_once(opened)
     clocks = list(dict.fromkeys(item.clock for item in opened))
     if guide.reference_clock not in clocks:
         guide = replace(guide, reference_clock=clocks[0])
     _check_overlap(opened)
+    if guide.reference_clock in run.file.override.clock_offset:
+        message = (
+            f"[override.clock_offset] moves {guide.reference_clock!r}, to which the other clocks are fitted"
+        )
+        raise DataError(
+            message, "give the offsets of the other clocks against it", path=run.folder / "run.toml"
+        )
     by_clock = {name: [c for item in opened if item.clock == name for c in item.channels] for name in clocks}
     believed = {name: [_believed(run, channel, guide) for channel in by_clock[name]] for name in clocks}
+    check_ranges([channel for name in clocks for channel in believed[name]], run.rig)
     reference = believed[guide.reference_clock]
     fits: list[ClockFit] = []
     findings: list[Finding] = []
@@ -79,7 +91,7 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
         channels += [_mapped(channel, fit) for channel in by_clock[name]]
     windows = windows_of(run, channels, guide.drive_frequency)
     done, found = finished(channels, run.rig, guide, windows)
-    findings += found
+    findings += (*windows.findings, *found)
     at_rest = [item for item in (windows.rest_before, windows.rest_after) if item is not None]
     result: list[Channel] = []
     for channel in done:
@@ -92,6 +104,7 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
         result.append(flagged)
     excluded, found = with_excludes(result, run)
     findings += found
+    findings += hole_findings(excluded, windows.steady, guide.drive_frequency or run.file.drive.frequency)
     order = {sensor.name: number for number, sensor in enumerate(run.rig.sensor)}
     ordered = sorted(excluded, key=lambda channel: order[channel.name])
     findings += [finding for channel in ordered for finding in flag_findings(channel)]
@@ -138,6 +151,12 @@ def _check_overlap(opened: Sequence[LoggedChannels]) -> None:
     channels = [channel for item in opened for channel in item.channels]
     last = max(channels, key=lambda channel: float(channel.time[0]))
     first = min(channels, key=lambda channel: float(channel.time[-1]))
+    shortest = min(channels, key=lambda channel: float(channel.time[-1] - channel.time[0]))
+    length = float(shortest.time[-1] - shortest.time[0])
+    if length < SHORTEST_OVERLAP:
+        message = f"the log is {length:.3g} s long, expected a run"
+        remedy = "export the whole log again, with its time in seconds"
+        raise DataError(message, remedy, path=shortest.source.file if shortest.source else None)
     if float(first.time[-1] - last.time[0]) < SHORTEST_OVERLAP:
         message = (
             f"channels never overlap in time: {first.name!r} ends at {first.time[-1]:.3f} s, {last.name!r} "

@@ -52,7 +52,7 @@ def with_excludes(channels: Sequence[Channel], run: Run) -> tuple[tuple[Channel,
     Raises
     ------
     DataError
-        A span names a channel that the run does not have.
+        A span names a channel that the run does not have, holds no sample of it, or leaves none.
     """
     result = {channel.name: channel for channel in channels}
     findings: list[Finding] = []
@@ -63,8 +63,17 @@ def with_excludes(channels: Sequence[Channel], run: Run) -> tuple[tuple[Channel,
             raise DataError(message, "correct the channel in run.toml", path=run.folder / "run.toml")
         inside = (channel.time >= item.span[0]) & (channel.time <= item.span[1])
         result[item.channel] = channel.with_flags(inside, Flag.EXCLUDED)
+        if channel.usable.any() and not result[item.channel].usable.any():
+            message = f"[[exclude]] leaves no sample of {item.channel!r}"
+            remedy = "shorten the span, or leave the channel out of [[log]] channels"
+            raise DataError(message, remedy, path=run.folder / "run.toml")
         text = f"{item.span[0]:g}-{item.span[1]:g} s excluded by hand: {item.reason}"
         count = int(np.count_nonzero(inside))
+        if not count:
+            span = f"{item.span[0]:g} s to {item.span[1]:g} s"
+            logged = f"{channel.time[0]:.4g} s to {channel.time[-1]:.4g} s"
+            message = f"[[exclude]] {item.channel!r} from {span}: it was logged from {logged}"
+            raise DataError(message, "correct the span in run.toml", path=run.folder / "run.toml")
         findings.append(Finding(item.channel, "excluded", text, "note", (item.span,), count))
     return tuple(result.values()), tuple(findings)
 

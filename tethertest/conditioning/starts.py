@@ -11,9 +11,11 @@ from tethertest.records.run import Log
 
 #: logs of a run start this close to its date: the date is typed by hand, to the minute [s]
 START_TOLERANCE = 300.0
-#: clocks in another zone are off by multiples of this [s], by at most `LARGEST_ZONE` of them
-ZONE_STEP = 1800.0
-LARGEST_ZONE = 28
+#: clocks in another zone are off by whole hours [s], or by halves where the laboratory's own zone is; a log
+#: half an hour off is one of another run
+HOUR, HALF_HOUR = 3600.0, 1800.0
+#: and by no more than this [s]
+LARGEST_ZONE = 14 * HOUR
 
 
 def start_after(raw: RawLog, entry: Log, date: dt.datetime) -> tuple[float, tuple[Finding, ...]]:
@@ -36,8 +38,8 @@ def start_after(raw: RawLog, entry: Log, date: dt.datetime) -> tuple[float, tupl
     Raises
     ------
     DataError
-        The log started at another time than the run, and neither a swap of day and month nor whole half
-        hours explain it: its channels never overlap with the others in time.
+        The log started at another time than the run, and neither a swap of day and month nor another zone
+        explains it: its channels never overlap with the others in time.
     """
     if raw.start is None:
         text = "the log has no date: its first sample is taken at the run's date"
@@ -50,11 +52,13 @@ def start_after(raw: RawLog, entry: Log, date: dt.datetime) -> tuple[float, tupl
     candidates = [("hours_off", start)]
     if swapped is not None and abs((swapped - date).total_seconds()) < abs(seconds):
         candidates = [("day_month_swapped", swapped), ("hours_off", swapped), *candidates]
+    zone = date.utcoffset() or dt.timedelta()
+    step = HALF_HOUR if zone.total_seconds() % HOUR else HOUR
     for kind, candidate in candidates:
         off = (candidate - date).total_seconds()
-        steps = 0 if kind == "day_month_swapped" else round(off / ZONE_STEP)
-        if abs(off - steps * ZONE_STEP) <= START_TOLERANCE and abs(steps) <= LARGEST_ZONE:
-            return off - steps * ZONE_STEP, _findings(raw, entry, start, candidate, steps)
+        shift = 0.0 if kind == "day_month_swapped" else step * round(off / step)
+        if abs(off - shift) <= START_TOLERANCE and abs(shift) <= LARGEST_ZONE:
+            return off - shift, _findings(raw, entry, start, candidate, shift)
     message = (
         f"the log starts at {raw.start.isoformat(' ')}, the run at {date.isoformat(' ')}: its channels never "
         "overlap in time with the run's"
@@ -77,7 +81,7 @@ def _swapped(start: dt.datetime) -> dt.datetime | None:
 
 
 def _findings(
-    raw: RawLog, entry: Log, start: dt.datetime, used: dt.datetime, steps: int
+    raw: RawLog, entry: Log, start: dt.datetime, used: dt.datetime, shift: float
 ) -> tuple[Finding, ...]:
     found: list[Finding] = []
     if used != start:
@@ -86,7 +90,7 @@ def _findings(
             f"month swapped; read as {used.date().isoformat()}"
         )
         found.append(Finding(entry.clock, "day_month_swapped", text))
-    if steps:
-        text = f"{raw.path.name}: starts {steps * ZONE_STEP / 3600.0:+g} h from the run's date; shifted back"
+    if shift:
+        text = f"{raw.path.name}: starts {shift / HOUR:+g} h from the run's date; shifted back"
         found.append(Finding(entry.clock, "hours_off", text))
     return tuple(found)

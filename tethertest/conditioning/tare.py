@@ -83,7 +83,9 @@ def zeroed(
     if level is None:
         text = f"no usable sample at rest: its zero is unknown, the record's median is set to {expected:g}"
         value = float(np.median(channel.values[channel.usable])) if channel.usable.any() else expected
-        finding = Finding(channel.name, "no_tare", text, "fatal")
+        # a grating informs; without the zero of a load cell or an encoder nothing can be decided
+        severity = "warning" if channel.kind == "strain" else "fatal"
+        finding = Finding(channel.name, "no_tare", text, severity)
         return channel.with_values(channel.values - value + expected, text), (finding,)
     drift = after.value - before.value if before is not None and after is not None else 0.0
     elapsed = after.time - before.time if before is not None and after is not None else 1.0

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from tethertest.compare import compare
-from tethertest.conditioning import Guide, condition
+from tethertest.conditioning import Guide, condition, stated_findings
+from tethertest.errors import DataError
 from tethertest.pipeline.expect import expectation
 from tethertest.pipeline.provenance import provenance
 from tethertest.readers import load_prototype_of, load_run, read_log
-from tethertest.records.channel import Channel, ConditionedRun, Window
+from tethertest.records.channel import Channel, ConditionedRun, RawLog, Window
 from tethertest.records.lines import ChannelLines, DriveFit, Event
 from tethertest.records.report import Report
 from tethertest.records.response import Response
@@ -71,8 +73,23 @@ def make_report(folder: Path, rigs: Path | None = None) -> Report:
     run = load_run(folder, rigs)
     prototype = load_prototype_of(run.rig, run.rig_path)
     logs = {log.file: read_log(run.folder / log.file, log) for log in run.file.log}
+    try:
+        return _reported(run, prototype, logs)
+    except DataError as error:
+        raise _placed(error, run) from error
+
+
+def _placed(error: DataError, run: Run) -> DataError:
+    """Return the error with the file's place; what no log is to blame for is mended in run.toml."""
+    name = error.path or "run.toml"
+    path = run.folder / name if error.path is None or name in {log.file for log in run.file.log} else name
+    return DataError(error.problem, error.remedy, path=path, line=error.line)
+
+
+def _reported(run: Run, prototype: Prototype | None, logs: Mapping[str, RawLog]) -> Report:
     measured = condition(run, logs, _guide(run))
     drive = _drive(run, measured)
+    measured = replace(measured, findings=(*measured.findings, *stated_findings(run, measured, drive)))
     replayed = _replay(run, measured, drive)
     lines, replayed_lines = _lines(run, measured, replayed, drive)
     comparison = compare(

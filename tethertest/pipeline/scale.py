@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tethertest.errors import TethertestError
+from tethertest.errors import QuantityError, TethertestError
 from tethertest.readers import load_prototype, load_prototype_of, load_rig
+from tethertest.records.quantity import SI
 from tethertest.records.similarity import Similarity
 from tethertest.similitude import similarity
-from tethertest.units import parse_quantity
+
+#: drives that a rig can have
+FREQUENCY = SI("Hz", above=0.0, maximum=1e4)
+AMPLITUDE = SI("m", above=0.0, maximum=1e3)
 
 
 def scale_rig(
@@ -40,6 +44,13 @@ def scale_rig(
     if mode not in rig.platform.modes:
         message = f"platform mode {mode!r} is not one of {', '.join(rig.platform.modes)}"
         raise TethertestError(message, "name one of the rig's modes with --mode", path=rig_path)
-    return similarity(
-        rig, prototype, parse_quantity(frequency, "Hz").value, parse_quantity(amplitude, "m").value, mode
-    )
+    drive = _asked("--frequency", frequency, FREQUENCY), _asked("--amplitude", amplitude, AMPLITUDE)
+    return similarity(rig, prototype, *drive, mode)
+
+
+def _asked(option: str, text: str, expected: SI) -> float:
+    try:
+        return expected.parse(text)
+    except QuantityError as error:
+        message = f"{option}: {error.problem}"
+        raise QuantityError(message, error.remedy) from error

@@ -8,7 +8,14 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tethertest.errors import RunFileError
-from tethertest.readers.config_problems import Problem, news, raise_problems, suggestion
+from tethertest.readers.config_problems import (
+    NAME_SHOWN,
+    Problem,
+    is_file_name,
+    news,
+    raise_problems,
+    suggestion,
+)
 from tethertest.readers.config_rig_checks import prototype_problems, rig_problems
 from tethertest.readers.config_run_checks import run_problems
 from tethertest.readers.config_scene_checks import scene_problems
@@ -136,7 +143,9 @@ def load_run(folder: Path | str, rigs: Path | str | None = None) -> Run:
     if folder.name == RUN_FILE and not folder.is_dir():
         folder = folder.parent
     if not folder.is_dir():
-        message = "the run folder does not exist"
+        message = (
+            "found a file, expected a run folder" if folder.exists() else "the run folder does not exist"
+        )
         raise RunFileError(message, f"give the path of a folder with a {RUN_FILE}", path=folder)
     document = read_document(folder / RUN_FILE, "run file")
     file, problems = structure(RunFile, document.data)
@@ -161,8 +170,10 @@ def _checked(kind: type[Record], document: TomlFile, checks: Callable[[Record], 
 
 
 def _find_rig(document: TomlFile, name: str, folder: Path, rigs: Path | None) -> Path:
-    if not name or Path(name).name != name or "\\" in name:
-        problem = Problem(("rig",), f"found {name!r}, expected the name of a rig", 'write `rig = "rig3m"`')
+    if not name or Path(name).name != name or "\\" in name or not is_file_name(f"{name}.toml"):
+        problem = Problem(
+            ("rig",), f"found {name[:NAME_SHOWN]!r}, expected the name of a rig", 'write `rig = "rig3m"`'
+        )
         raise_problems(document, [problem])
     if rigs is not None:
         folders = [rigs]

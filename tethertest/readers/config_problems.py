@@ -10,6 +10,11 @@ from typing import Any
 from tethertest.errors import RunFileError
 from tethertest.readers.config_toml import KeyPath, TomlFile
 
+#: longest name of a file that file systems take [bytes]
+_LONGEST_NAME = 255
+#: of a name that is no name, a message shows this much
+NAME_SHOWN = 60
+
 
 @dataclass(frozen=True, slots=True)
 class Problem:
@@ -51,6 +56,11 @@ def suggestion(found: str, known: Iterable[str]) -> str:
     if near:
         return f"did you mean {near[0]!r}?"
     return f"use one of {', '.join(names)}" if names else "remove it; none is defined"
+
+
+def is_file_name(text: str) -> bool:
+    """Return whether a file may have this relative path: no NUL, and no part too long for a file system."""
+    return "\0" not in text and all(len(part.encode()) <= _LONGEST_NAME for part in text.split("/"))
 
 
 def news(found: Iterable[Problem], known: Iterable[Problem]) -> list[Problem]:

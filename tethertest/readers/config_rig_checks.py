@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from itertools import combinations
+from pathlib import Path
 
 from tethertest.errors import QuantityError
 from tethertest.readers.config_cable_checks import cable_problems, weight_problems
-from tethertest.readers.config_problems import Problem, suggestion
+from tethertest.readers.config_problems import NAME_SHOWN, Problem, is_file_name, suggestion
 from tethertest.records.rig import Prototype, Rig, Sensor, sensor_noise, sensor_range
 
 _GRATING = {"expected", "capture", "thermo_optic"}
@@ -59,6 +60,13 @@ def rig_problems(rig: Rig) -> Iterator[Problem]:
                 "correct one of the two dates",
             )
     yield from _overlaps(rig)
+    if rig.prototype is not None and (
+        not rig.prototype or Path(rig.prototype).name != rig.prototype or not is_file_name(rig.prototype)
+    ):
+        text = f"found {rig.prototype[:NAME_SHOWN]!r}, expected the name of a prototype file"
+        yield Problem(
+            ("prototype",), text, 'write `prototype = "prototype-150m"` for the file beside the rig'
+        )
     for table in ("order_amplitude", "order_phase"):
         for order in getattr(rig.limits, table):
             if not _ORDER.fullmatch(order):

@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from zoneinfo import ZoneInfo
 
 from tethertest.errors import QuantityError
-from tethertest.readers.config_problems import Problem, suggestion
+from tethertest.readers.config_problems import NAME_SHOWN, Problem, is_file_name, suggestion
 from tethertest.records.rig import Rig
 from tethertest.records.run import Drive, Log, RunFile, Windows
 from tethertest.units import channel_scale
@@ -24,7 +24,8 @@ DRIVE_KEYS = {
 #: keys that a kind of drive may have besides
 OPTIONAL_DRIVE_KEYS = {"measured": {"frequency"}}
 _DRIVE_EXAMPLES = {"frequency": '"0.3 Hz"', "radius": '"0.1 m"', "amplitude": '"0.1 m"'}
-_UTC_OFFSET = re.compile(r"[+-]\d\d:?\d\d|Z|UTC")
+_UTC_OFFSET = re.compile(r"[+-](0\d|1[0-4]):?[0-5]\d")
+_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 
 
 def run_problems(file: RunFile, rig: Rig, folder: Path) -> Iterator[Problem]:
@@ -34,10 +35,14 @@ def run_problems(file: RunFile, rig: Rig, folder: Path) -> Iterator[Problem]:
         yield Problem(("date",), text, f"add the laboratory's zone: {file.date.isoformat()}+08:00")
     if not file.id.strip():
         yield Problem(("id",), "found an empty name", "name the run, for instance after its folder")
+    elif _CONTROL.search(file.id):
+        text = f"found {file.id!r}, expected a name on one line"
+        yield Problem(("id",), text, "name the run, for instance after its folder")
     if file.platform.mode not in rig.platform.modes:
         text = f"found {file.platform.mode!r}, expected one of the platform modes of {rig.name!r}"
         yield Problem(("platform", "mode"), text, suggestion(file.platform.mode, rig.platform.modes))
     yield from _drive_problems(file.drive)
+    yield from _amplitude_problems(file.drive, rig)
     if not file.log:
         yield Problem(("log",), "found no log, expected at least one", "add a [[log]] table for each raw log")
     for index, log in enumerate(file.log):
@@ -54,7 +59,10 @@ def run_problems(file: RunFile, rig: Rig, folder: Path) -> Iterator[Problem]:
         if not exclude.reason.strip():
             yield Problem((*key, "reason"), "found no reason", "say why the span is left out")
     clocks = sorted({log.clock for log in file.log})
-    for clock in file.override.clock_offset:
+    for clock, offset in file.override.clock_offset.items():
+        if not offset.reason.strip():
+            text = "found no reason"
+            yield Problem(("override", "clock_offset", clock, "reason"), text, "say where the offset is from")
         if clock not in clocks:
             text = f"found {clock!r}, expected the clock of one of the run's logs"
             yield Problem(("override", "clock_offset", clock), text, suggestion(clock, clocks))
@@ -71,6 +79,14 @@ def _drive_problems(drive: Drive) -> Iterator[Problem]:
         elif is_there and key not in needed | optional:
             text = f"does not belong to a drive of kind {drive.kind!r}"
             yield Problem(("drive", key), text, f"remove {key}, or correct the kind")
+
+
+def _amplitude_problems(drive: Drive, rig: Rig) -> Iterator[Problem]:
+    for key in ("radius", "amplitude"):
+        value = getattr(drive, key)
+        if value is not None and value >= rig.cable.length:
+            text = f"found {value:g} m, expected less than the cable's length of {rig.cable.length:g} m"
+            yield Problem(("drive", key), text, f"correct {key}, or the cable's length in the rig file")
 
 
 def _log_problems(index: int, log: Log, rig: Rig, folder: Path) -> Iterator[Problem]:
@@ -106,13 +122,23 @@ def _path_problems(key: tuple[str | int, ...], file: str, folder: Path) -> Itera
     is_outside = (
         PurePosixPath(file).is_absolute() or bool(windows.drive or windows.root) or ".." in windows.parts
     )
-    if is_outside or not file or not (folder / file).resolve().is_relative_to(folder.resolve()):
+    if not is_file_name(file):
+        text = f"found {file[:NAME_SHOWN]!r}, which no file can be called"
+        yield Problem(key, text, "copy the log into the run folder and give its name")
+    elif is_outside or not file or not _is_inside(folder / file, folder):
         text = f"found {file!r}, expected a file inside the run folder"
         yield Problem(key, text, "copy the log into the run folder and give its name")
     elif not (folder / file).is_file():
         logs = sorted(entry.name for entry in folder.iterdir() if entry.is_file() and entry.suffix != ".toml")
         text = f"found {file!r}, but the run folder has no such file"
         yield Problem(key, text, suggestion(file, logs) if logs else "copy the log into the run folder")
+
+
+def _is_inside(path: Path, folder: Path) -> bool:
+    try:
+        return path.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):  # a link that leads to itself
+        return False
 
 
 def _repeated(logs: tuple[Log, ...]) -> Iterator[Problem]:

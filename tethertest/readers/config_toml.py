@@ -51,7 +51,7 @@ def read_document(path: Path, what: str) -> TomlFile:
     Raises
     ------
     RunFileError
-        The file is missing, is no UTF-8 text or is not valid TOML.
+        The file is missing, is no UTF-8 text, is not valid TOML or is far too deep.
     """
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -69,6 +69,9 @@ def read_document(path: Path, what: str) -> TomlFile:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise _syntax_error(str(error), text, path) from None
+    except (RecursionError, ValueError):
+        message = f"the {what} holds a number or a nesting of lists that is too long to read"
+        raise RunFileError(message, "write quantities as text with a unit", path=path) from None
     return TomlFile(path, data, _Scanner(text).scan())
 
 

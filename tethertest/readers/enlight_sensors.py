@@ -74,10 +74,13 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     time = stamps.seconds()
     channels = []
     assumed = []
+    in_band = [_in_band(columns.numbers[column]) for column in range(1, width)]
     for column in range(1, width):
         name, unit = split_unit(names[column])
         values = columns.numbers[column]
-        if not unit and _in_band(values):
+        # a grating that was never seen is one like those beside it
+        never_seen = any(in_band) and not np.any(np.isfinite(values) & (values > 0.0))
+        if not unit and (in_band[column - 1] or never_seen):
             unit = "nm"
             assumed.append(name)
         channels.append(raw_channel(name, unit, time, values))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 import io
+import logging
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -61,8 +62,8 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         else:
             data.append(channel)
     if not any(len(channel) for channel in data):
-        message = "the log has no data"
-        raise FileFormatError(message, "choose another file", path=path)
+        message = "the log has no data: it is empty or was cut"
+        raise FileFormatError(message, "copy the whole file from the logger again", path=path)
     starts = [_start(channel, clocks[channel.group_name]) for channel in data]
     known = [start for start in starts if start is not None]
     first = min(known) if known else None
@@ -97,7 +98,10 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
 
 def _opened(path: Path) -> Any:
     from nptdms import TdmsFile
+    from nptdms.log import log_manager
 
+    # what npTDMS would print about a cut file is in our own message
+    log_manager.set_level(logging.CRITICAL)
     data = read_bytes(path)
     try:
         file = TdmsFile.read(io.BytesIO(data))

@@ -169,6 +169,9 @@ def _decode(path: Path, data: bytes, encoding: str, errors: str = "strict") -> s
         message = f"byte 0x{data[error.start]:02x} does not belong to the encoding {encoding}"
         remedy = "set encoding in run.toml to the one the logger used"
         raise FileFormatError(message, remedy, path=path, line=line) from error
+    except UnicodeError as error:  # codecs that are not for text, such as idna
+        message = f"encoding {encoding!r} is none of a log ({error})"
+        raise FileFormatError(message, "use utf-8, utf-16, cp1252 or gb18030", path=path) from error
 
 
 def _one_line_end(text: str) -> str:

@@ -21,7 +21,7 @@ class Instrument:
 
     name: str
     rate: Annotated[float, SI("Hz", above=0.0)]
-    clock_drift: Annotated[float, SI("1", above=0.0)] = 1e-4  #: largest drift worth believing
+    clock_drift: Annotated[float, SI("1", above=0.0, maximum=0.01)] = 1e-4  #: largest drift worth believing
     count: Annotated[float, SI("1", above=0.0)] | None = None  #: one count, as a ratio (V/V)
 
 
@@ -35,7 +35,8 @@ class Sensor:
         None  #: fraction of the length from the bottom
     )
     range: tuple[str, str] | None = None  #: text with units, in the unit of the kind
-    sensitivity: Annotated[float, SI("1", above=0.0)] | None = None  #: load cell output at the rated load
+    #: load cell output at the rated load; bridges give a few mV/V
+    sensitivity: Annotated[float, SI("1", above=0.0, maximum=0.1)] | None = None
     rated: Annotated[float, SI("N", above=0.0)] | None = None
     noise: str | None = None  #: standard deviation of one sample, text with unit
     calibrated: dt.date | None = None
@@ -88,13 +89,20 @@ class RigDrive:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Acceptance limits per metric: the largest relative error that still passes."""
+    """Acceptance limits per metric: the largest relative error that still passes.
+
+    At most 100 %: a bare 10 where 10 % was meant would let everything pass.
+    """
 
     decision: Literal["guard", "simple"] = "guard"
-    peak_tension: Annotated[float, SI("1", above=0.0)] | None = None
-    order_amplitude: dict[str, Annotated[float, SI("1", above=0.0)]] = field(default_factory=dict)
-    order_phase: dict[str, Annotated[float, SI("rad", above=0.0)]] = field(default_factory=dict)
-    sprague_geers: Annotated[float, SI("1", above=0.0)] | None = None
+    peak_tension: Annotated[float, SI("1", above=0.0, maximum=1.0)] | None = None
+    order_amplitude: dict[str, Annotated[float, SI("1", above=0.0, maximum=1.0)]] = field(
+        default_factory=dict
+    )
+    order_phase: dict[str, Annotated[float, SI("rad", above=0.0, maximum=math.pi)]] = field(
+        default_factory=dict
+    )
+    sprague_geers: Annotated[float, SI("1", above=0.0, maximum=1.0)] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,8 @@ class Drive:
 
     kind: Literal["crank-slider", "harmonic", "measured", "none"]
     frequency: Annotated[float, SI("Hz", above=0.0)] | None = None  #: nominal; the fit starts here
-    radius: Annotated[float, SI("m", minimum=0.0)] | None = None
-    amplitude: Annotated[float, SI("m", minimum=0.0)] | None = None
+    radius: Annotated[float, SI("m", above=0.0)] | None = None
+    amplitude: Annotated[float, SI("m", above=0.0)] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Source
-from tethertest.records.response import Response
+from tethertest.records.response import Response, Status
 from tethertest.records.run import Run
 from tethertest.replay.motion import bottom_motion
 from tethertest.replay.scene import run_scene
@@ -31,7 +32,13 @@ def replayed_channels(response: Response, start: float, measured: Sequence[Chann
     measured : sequence of Channel
         Measured channels on the run's clock; each gives place and times. Times that the replay does not reach
         are left out.
+
+    Raises
+    ------
+    DataError
+        The solve left the range of numbers: what it holds after that is nothing.
     """
+    _check_finished(response)
     replayed = []
     for channel in measured:
         if channel.kind not in {"tension", "strain"} or channel.at is None:
@@ -59,11 +66,20 @@ def expected_bottom_tension(run: Run) -> Callable[[Channel], Channel]:
             fidelity="nonlinear",
             cells=_ALIGNMENT_CELLS,
         )
+        _check_finished(response)
         time = response.time + motion.start
         answered = _channel(heave, time, response.tension[:, 0], response.scheme)
         return replace(answered, name="expected bottom tension", kind="tension", unit="N", at=0.0)
 
     return answer
+
+
+def _check_finished(response: Response) -> None:
+    if response.status is Status.NOT_FINITE:
+        message = f"the replay broke off: {response.status.value}"
+        raise DataError(
+            message, "correct cable, platform and modes in the rig file, or the unit of the motion"
+        )
 
 
 def _channel(like: Channel, time: FloatArray, values: FloatArray, scheme: str) -> Channel:

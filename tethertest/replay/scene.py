@@ -6,11 +6,15 @@ from tethertest.errors import DataError
 from tethertest.records.rig import Rig
 from tethertest.records.run import Run
 from tethertest.records.scene import Accuracy, Bottom, Geometry, Output, Scene, Top
+from tethertest.solver import MESHES
+from tethertest.solver.axial import step_count
 
 #: relative error that the replay asks of the solver
 REPLAY_TOLERANCE = 0.01
 #: output rate of the replay [Hz]; a snap on the rig rings at 14 Hz
 REPLAY_RATE = 500.0
+#: more steps than this on the coarsest mesh mean a wrong rig file: the 3 m rig needs 2e5 a minute
+MOST_STEPS = 2e7
 
 
 def run_scene(run: Run, duration: float, *, rig: Rig | None = None) -> Scene:
@@ -28,7 +32,8 @@ def run_scene(run: Run, duration: float, *, rig: Rig | None = None) -> Scene:
     Raises
     ------
     DataError
-        The run names a platform mode that the rig does not have.
+        The run names a platform mode that the rig does not have, or the rig a cable so short, stiff or damped
+        that its waves cannot be followed.
     """
     used = run.rig if rig is None else rig
     mode = used.platform.modes.get(run.file.platform.mode)
@@ -36,7 +41,7 @@ def run_scene(run: Run, duration: float, *, rig: Rig | None = None) -> Scene:
         message = f"platform mode {run.file.platform.mode!r} is not one of {', '.join(used.platform.modes)}"
         raise DataError(message, "correct [platform] mode in run.toml", path=run.folder / "run.toml")
     places = sorted({0.0, 1.0, *(sensor.at for sensor in used.sensor if sensor.at is not None)})
-    return Scene(
+    scene = Scene(
         name=run.file.title or run.file.id,
         cable=used.cable,
         geometry=Geometry(kind="vertical"),
@@ -55,6 +60,12 @@ def run_scene(run: Run, duration: float, *, rig: Rig | None = None) -> Scene:
         accuracy=Accuracy(REPLAY_TOLERANCE),
         gravity=used.gravity,
     )
+    steps = step_count(scene, MESHES[0], unilateral=True)
+    if steps > MOST_STEPS:
+        message = f"a replay of {duration:.4g} s would need {steps:.2g} steps, more than {MOST_STEPS:.2g}"
+        remedy = "correct length, mass_per_length, axial_stiffness and axial_damping_time of the rig's cable"
+        raise DataError(message, remedy, path=run.rig_path)
+    return scene
 
 
 def rest_tensions(rig: Rig) -> dict[str, float]:

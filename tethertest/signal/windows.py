@@ -142,6 +142,8 @@ def find_steady(series: Series, frequency: float) -> Steady | None:
         vector = _demodulated(time, values, rate, found)
         size, phase = np.abs(vector), np.unwrap(np.angle(vector))
         strong = size > 0.5 * np.max(size) if strong is None else strong
+        if not strong.any():
+            return None
         amplitude = float(np.median(size[strong]))
         if amplitude < DETECTABLE * noise:
             return None

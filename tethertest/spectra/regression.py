@@ -135,6 +135,12 @@ def fit_orders(
     """
     fitted = resolvable_orders(orders, drive, blocks.length, HIGHEST_SHARE * blocks.rate)
     frequencies = np.array([*(float(order) * drive for order in fitted), *free])
+    filled, needed = np.count_nonzero(blocks.weights), 2 * frequencies.size + TREND_DEGREE + 1
+    if filled <= needed:
+        message = (
+            f"the usable samples fill {filled} blocks of {blocks.step:.3g} s, too few for {needed} numbers"
+        )
+        raise DataError(message, "choose another window, or mend the channel that lacks its samples")
     sinusoids = fit_sinusoids(blocks, frequencies, origin, TREND_DEGREE)
     scale = float(np.sqrt(np.mean(blocks.values**2)))
     noise = noise_spectrum(sinusoids.residuals, blocks.weights, blocks.rate, frequencies, scale)

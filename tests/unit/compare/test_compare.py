@@ -103,7 +103,8 @@ def test_a_fatal_finding_or_many_lost_samples_leave_the_run_undecided(case: Case
 
 
 def test_a_run_without_drive_says_so_once_with_its_noise_floor(case: Case) -> None:
-    quiet = ConditionedRun(channels(scale=0.0, noise=0.01), (), (), None, None, None)
+    still = replace(channels(scale=0.0)[0], name="heave", kind="displacement", unit="m", at=0.0)
+    quiet = ConditionedRun((*channels(scale=0.0, noise=0.01), still), (), (), None, None, None)
     comparison = compare(quiet, (), (), (), LIMITS)
     assert comparison.verdict is Verdict.UNDECIDED
     assert len(comparison.reasons) == 1
@@ -156,3 +157,28 @@ def test_static_tensions_of_the_case_are_those_of_the_signals(case: Case) -> Non
     for channel in case.measured.channels:
         inside = channel.between(WINDOW.start, WINDOW.stop)
         assert inside.values.mean() == pytest.approx(STATIC[channel.name], abs=0.01)
+
+
+def test_rows_that_were_never_logged_leave_a_run_undecided(case: Case) -> None:
+    top, bottom = case.measured.channels
+    short = replace(case, measured=replace(case.measured, channels=(top.between(0.0, 30.0), bottom)))
+    comparison = short.against(channels())
+    assert comparison.verdict is Verdict.UNDECIDED
+    assert "tension_top: 37.5% of the window cannot be used" in comparison.reasons[0]
+
+
+def test_a_bottom_motion_with_too_many_holes_leaves_a_run_undecided(case: Case) -> None:
+    top = case.measured.channels[0]
+    heave = replace(top, name="heave", kind="displacement", unit="m", at=0.0)
+    holed = heave.with_flags(np.arange(heave.time.size) % 10 == 0, Flag.MISSING)
+    comparison = replace(
+        case, measured=replace(case.measured, channels=(*case.measured.channels, holed))
+    ).against(channels())
+    assert comparison.verdict is Verdict.UNDECIDED
+    assert "heave: 10.0% of the window cannot be used" in comparison.reasons[0]
+
+
+def test_a_run_without_encoder_says_that_nothing_was_replayed(case: Case) -> None:
+    comparison = compare(case.measured, (), (), (), LIMITS)
+    assert comparison.verdict is Verdict.UNDECIDED
+    assert "the bottom motion was not logged" in comparison.reasons[0]

@@ -86,6 +86,15 @@ def test_zone_of_the_log_wins():
     assert start_after(log(dt.datetime(2026, 9, 5, 6, 20, 3)), entry, DATE)[0] == pytest.approx(3.0)
 
 
+def test_half_an_hour_is_a_zone_only_where_the_laboratory_has_such_a_zone():
+    half_an_hour_late = dt.datetime(2026, 9, 5, 14, 50, 2)
+    with pytest.raises(DataError, match="never overlap in time"):
+        start_after(log(half_an_hour_late), ENTRY, DATE)
+    india = DATE.replace(tzinfo=dt.timezone(dt.timedelta(hours=5.5)))
+    utc = dt.datetime(2026, 9, 5, 8, 50, 2)
+    assert start_after(log(utc), ENTRY, india)[0] == pytest.approx(2.0)
+
+
 def test_log_of_another_day_never_overlaps():
     with pytest.raises(DataError, match="never overlap in time"):
         start_after(log(dt.datetime(2026, 9, 17, 14, 20)), ENTRY, DATE)

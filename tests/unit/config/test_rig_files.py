@@ -133,6 +133,24 @@ MISTAKES = {
         "platform.modes.hold.hover_stiffness",
         "expected a quantity in N/m",
     ),
+    "limit that lets everything pass": (
+        'peak_tension = "10 %"',
+        "peak_tension = 10",
+        "limits.peak_tension",
+        "expected at most 1",
+    ),
+    "sensitivity in V/V": (
+        'sensitivity = "2 mV/V"',
+        'sensitivity = "2 V/V"',
+        "sensor.tension_top.sensitivity",
+        "expected at most 0.1",
+    ),
+    "prototype given as a path": (
+        'name = "bench"',
+        'name = "bench"\nprototype = "../rigs/other"',
+        "prototype",
+        "expected the name of a prototype file",
+    ),
     "uncertainty is no key": ("[limits]", "[uncertainty]\n[limits]", "uncertainty", "unknown key"),
 }
 

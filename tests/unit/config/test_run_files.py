@@ -82,6 +82,29 @@ MISTAKES = {
         "override.clock_offset.dqa",
         "did you mean 'daq'",
     ),
+    "override without reason": (
+        "[windows]",
+        '[override.clock_offset]\ndaq = { value = "1 s", reason = "" }\n[windows]',
+        "override.clock_offset.daq.reason",
+        "found no reason",
+    ),
+    "crank without radius": ('radius = "0.1 m"', 'radius = "0 m"', "drive.radius", "expected more than 0 m"),
+    "crank longer than the cable": ('radius = "0.1 m"', 'radius = "100 m"', "drive.radius", "cable's length"),
+    "zone that is none": (
+        'clock = "daq"',
+        'clock = "daq"\ntime_zone = "+99:00"',
+        "log[1].time_zone",
+        "a time zone",
+    ),
+    "name no file can have": (
+        '"tension.csv"',
+        '"tension\\u0000.csv"',
+        "log[1].file",
+        "no file can be called",
+    ),
+    "name too long": ('"tension.csv"', f'"{"x" * 300}.csv"', "log[1].file", "no file can be called"),
+    "rig's name too long": ('rig = "bench"', f'rig = "{"x" * 300}"', "rig", "expected the name of a rig"),
+    "name of two lines": ('id = "', 'id = "two\\n', "id", "on one line"),
     "rig that is not there": ('rig = "bench"', 'rig = "bensch"', "rig", "did you mean 'bench'"),
     "rig given as a path": ('rig = "bench"', 'rig = "../rigs/bench"', "rig", "expected the name of a rig"),
     "typo in a key": ("[drive]", 'purpse = "validation"\n[drive]', "purpse", "did you mean 'purpose'"),
@@ -134,6 +157,25 @@ def test_a_folder_without_run_file_and_no_folder_at_all_are_told_apart(bench, tm
         load_run(tmp_path)
     with pytest.raises(RunFileError, match="the run folder does not exist"):
         load_run(tmp_path / "run99")
+
+
+def test_a_log_in_place_of_a_run_folder_is_told(bench):
+    with pytest.raises(RunFileError, match="found a file, expected a run folder"):
+        load_run(bench.run / "tension.csv")
+
+
+def test_a_link_to_itself_is_no_log(bench):
+    (bench.run / "tension.csv").unlink()
+    (bench.run / "tension.csv").symlink_to("tension.csv")
+    with pytest.raises(RunFileError, match="expected a file inside the run folder"):
+        load_run(bench.run)
+
+
+@pytest.mark.parametrize("text", ["a = " + "[" * 5000 + "]" * 5000, "a = " + "9" * 10_000])
+def test_what_no_parser_can_hold_is_told(bench, text):
+    bench.run_file.write_text(text, encoding="utf-8")
+    with pytest.raises(RunFileError, match="too long to read"):
+        load_run(bench.run)
 
 
 def test_a_link_out_of_the_folder_is_a_path_out_of_the_folder(bench, tmp_path):

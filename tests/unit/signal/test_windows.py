@@ -72,6 +72,8 @@ def test_noise_alone_is_no_drive():
     quiet = Record(np.arange(12_000) / RATE, random.normal(0, 1e-5, 12_000), np.ones(12_000, bool))
     assert find_steady(quiet, 0.5) is None
     assert find_steady(driven(0.5), 4.0) is None
+    flat = Record(quiet.time, np.zeros(12_000), quiet.usable)
+    assert find_steady(flat, 0.5) is None
 
 
 def test_window_starts_when_a_subharmonic_has_grown():

@@ -73,3 +73,10 @@ def test_a_channel_without_usable_samples_is_passed_over_or_named(
     assert fit_drive([lost, good], window, 0.25).channels == ("tension_top",)
     with pytest.raises(DataError, match="'fbg1' has no usable samples"):
         fit_drive([lost], window, 0.25)
+
+
+def test_a_few_samples_in_a_long_window_are_too_few(channel: Maker, time: FloatArray, window: Window) -> None:
+    heave = channel(time, cosine(time, 0.3), name="heave")
+    few = heave.with_flags(np.arange(time.size) % 400 > 1, Flag.OUT_OF_RANGE)
+    with pytest.raises(DataError, match="too few"):
+        fit_drive([few], window, 0.3)

@@ -1,0 +1,75 @@
+"""What the run file states against what was logged: purpose and drive."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tethertest.records.channel import Channel, ConditionedRun, Finding
+from tethertest.records.lines import DriveFit
+from tethertest.records.run import Run
+
+#: a stated frequency or amplitude farther than this from what was logged is a slip of the pen
+STATED_FREQUENCY = 0.02
+STATED_AMPLITUDE = 0.1
+#: half the range of motion above which a run is driven, whatever its file says [m]
+STANDS_STILL = 2e-3
+#: range between these quantiles: spikes and marker taps are left out
+QUANTILES = (0.005, 0.995)
+
+
+def stated_findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> tuple[Finding, ...]:
+    """Return what the run file states and the logs contradict, and what its purpose forbids.
+
+    Parameters
+    ----------
+    run : Run
+        The run file's drive and purpose.
+    measured : ConditionedRun
+        Its displacement is held against the stated amplitude.
+    drive : DriveFit or None
+        The drive as fitted.
+    """
+    return tuple(_findings(run, measured, drive))
+
+
+def _findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> Iterator[Finding]:
+    stated = run.file.drive
+    heave = next((channel for channel in measured.channels if channel.kind == "displacement"), None)
+    if run.file.purpose == "calibration":
+        text = "its purpose is calibration: a run that identified the rig cannot validate it"
+        yield Finding("run.toml", "calibration_run", text, "fatal")
+    if stated.kind == "none":
+        moved = None if heave is None else half_range(heave)
+        if heave is not None and moved is not None and moved > STANDS_STILL:
+            text = f'[drive] kind is "none", but {heave.name} moves by +/-{moved:.3g} m; correct [drive]'
+            yield Finding("run.toml", "drive_not_stated", text, "fatal")
+        return
+    if drive is not None and stated.frequency is not None:
+        error = drive.frequency / stated.frequency - 1.0
+        if abs(error) > STATED_FREQUENCY:
+            text = (
+                f"[drive] frequency is {stated.frequency:.4g} Hz, the drive ran at {drive.frequency:.4g} Hz"
+            )
+            yield Finding("run.toml", "drive_frequency", f"{text}; correct it")
+    amplitude = stated.radius or stated.amplitude
+    if amplitude is None or heave is None or measured.steady is None:
+        return
+    moved = half_range(heave.between(measured.steady.start, measured.steady.stop))
+    if moved is not None and abs(moved / amplitude - 1.0) > STATED_AMPLITUDE:
+        key = "radius" if stated.radius is not None else "amplitude"
+        text = (
+            f"[drive] {key} is {amplitude:.4g} m, {heave.name} moves by +/-{moved:.4g} m: correct it or the "
+            f"unit of {heave.name}; the similitude table uses the stated one"
+        )
+        yield Finding("run.toml", "drive_amplitude", text)
+
+
+def half_range(heave: Channel) -> float | None:
+    """Return half the range of a displacement [m], without its rarest values; None where it has none."""
+    values = heave.values[heave.usable]
+    if not values.size:
+        return None
+    low, high = np.quantile(values, QUANTILES)
+    return 0.5 * float(high - low)

@@ -13,6 +13,7 @@ from tethertest.cli.inspect import inspect
 from tethertest.cli.report import report
 from tethertest.cli.scale import scale
 from tethertest.cli.schema import schema
+from tethertest.cli.solve import solve
 from tethertest.cli.version import show_version
 from tethertest.errors import TethertestError
 
@@ -27,7 +28,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.callback()(show_version)
-for command in (report, inspect, scale, schema):
+for command in (report, inspect, solve, scale, schema):
     app.command()(command)
 
 

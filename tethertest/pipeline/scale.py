@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tethertest.errors import QuantityError, TethertestError
+from tethertest.errors import TethertestError
+from tethertest.pipeline.asked import AMPLITUDE, FREQUENCY, asked
 from tethertest.readers import load_prototype, load_prototype_of, load_rig
-from tethertest.records.quantity import SI
 from tethertest.records.similarity import Similarity
 from tethertest.similitude import similarity
-
-#: drives that a rig can have
-FREQUENCY = SI("Hz", above=0.0, maximum=1e4)
-AMPLITUDE = SI("m", above=0.0, maximum=1e3)
 
 
 def scale_rig(
@@ -44,13 +40,5 @@ def scale_rig(
     if mode not in rig.platform.modes:
         message = f"platform mode {mode!r} is not one of {', '.join(rig.platform.modes)}"
         raise TethertestError(message, "name one of the rig's modes with --mode", path=rig_path)
-    drive = _asked("--frequency", frequency, FREQUENCY), _asked("--amplitude", amplitude, AMPLITUDE)
+    drive = asked("--frequency", frequency, FREQUENCY), asked("--amplitude", amplitude, AMPLITUDE)
     return similarity(rig, prototype, *drive, mode)
-
-
-def _asked(option: str, text: str, expected: SI) -> float:
-    try:
-        return expected.parse(text)
-    except QuantityError as error:
-        message = f"{option}: {error.problem}"
-        raise QuantityError(message, error.remedy) from error

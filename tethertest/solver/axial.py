@@ -92,7 +92,7 @@ def run_axial(
         drag=_drag(scene),
         unilateral=unilateral,
     )
-    record = _empty_record(scene, cells, steps)
+    record = empty_record(scene, cells, steps)
     rest_top = float(position[-1])
     done = march(bottom, position, line, _top_end(scene, rest, rest_top), time_step, record)
     gauges = np.asarray(scene.output.gauges)
@@ -152,7 +152,8 @@ def _top_end(scene: Scene, rest: RestState, position: float) -> TopEnd:
     return TopEnd(False, mass, rest.top_tension + mass * rest.gravity, stiffness, damping, position)
 
 
-def _empty_record(scene: Scene, cells: int, steps: int) -> Record:
+def empty_record(scene: Scene, cells: int, steps: int) -> Record:
+    """Return the record that a march of so many steps on so many cells fills."""
     output = scene.output
     rows = math.floor(output.duration * output.rate + 1e-9) + 1
     stations = np.concatenate([[0.0], (np.arange(cells) + 0.5) / cells, [1.0]])

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
+from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import ErrorBudget, Response, Status
 from tethertest.records.scene import MeasuredMotion, Scene
 from tethertest.solver.axial import AxialSolution, run_axial, step_count
+from tethertest.solver.planar import planar_case, planar_step, run_planar
 
 Fidelity = Literal["auto", "linear", "nonlinear"]
 
@@ -23,6 +25,37 @@ _NODE_STEP_LIMIT = 1.2e10
 _DAMPING_BAND = (3e-4, 1e-3, 3e-3)
 #: a grid pair of a second-order scheme overestimates the finer one's error by this factor
 _SECOND_ORDER = 3.0
+#: geometries whose cable is curved: it is marched in its plane
+_CURVED = ("shallow", "ends")
+
+
+@dataclass(frozen=True, slots=True)
+class _Plan:
+    """Which march solves the scene; everything but the mesh."""
+
+    scene: Scene
+    measured: MeasuredMotion | None
+    curved: bool
+    unilateral: bool
+
+    def march(self, cells: int) -> AxialSolution:
+        """March on one mesh."""
+        if self.curved:
+            return run_planar(self.scene, cells, viscous=True, measured=self.measured)
+        return run_axial(self.scene, cells, unilateral=self.unilateral, measured=self.measured)
+
+    def steps(self, cells: int) -> int:
+        """Return the number of steps on a mesh."""
+        if self.curved:
+            step = planar_step(planar_case(self.scene, cells, viscous=True))
+            return int(self.scene.output.duration / step) + 2
+        return step_count(self.scene, cells, unilateral=self.unilateral)
+
+    @property
+    def scheme(self) -> str:
+        """Name of the scheme."""
+        base = "leapfrog on the material mesh" + (" in the plane" if self.curved else "")
+        return base + (", limited viscosity" if self.unilateral else "")
 
 
 def solve(
@@ -34,7 +67,7 @@ def solve(
     cells: int | None = None,
     finest: int = MESHES[-1],
 ) -> Response:
-    """Solve a vertical or straight scene.
+    """Solve a scene: vertical and straight cables along their axis, curved ones in their plane.
 
     Parameters
     ----------
@@ -43,7 +76,8 @@ def solve(
     measured : MeasuredMotion, optional
         Bottom displacement, for ``motion = "measured"``.
     fidelity : {"auto", "linear", "nonlinear"}
-        "auto" runs the linear model and moves up when the cable went slack in it.
+        "auto" runs the linear model of a vertical or straight cable and moves up when it went slack in it; a
+        curved cable has the nonlinear model only.
     tolerance : float, optional
         Relative error wanted; the scene's own if absent.
     cells : int, optional
@@ -59,31 +93,35 @@ def solve(
     Raises
     ------
     DataError
-        The scene is not one that axial waves alone describe.
+        The scene is not one that these models describe.
     """
     began = time.perf_counter()
     wanted = scene.accuracy.tolerance if tolerance is None else tolerance
     meshes = (cells,) if cells is not None else tuple(mesh for mesh in MESHES if mesh <= finest)
     warnings: list[str] = []
-    unilateral = fidelity == "nonlinear"
-    if not unilateral:
-        response = _refined(scene, measured, wanted, meshes, unilateral=False)
+    curved = scene.geometry.kind in _CURVED
+    if curved:
+        _check_curved(scene, fidelity)
+    if not curved and fidelity != "nonlinear":
+        response = _refined(_Plan(scene, measured, False, False), wanted, meshes)
         lowest = float(np.min(response.field.minimum))
         if lowest > 0.0 or response.status is Status.NOT_FINITE:
             return replace(response, wall=time.perf_counter() - began)
         if fidelity == "linear":
             return replace(response, status=Status.SLACK_IN_LINEAR, wall=time.perf_counter() - began)
-    response = _refined(scene, measured, wanted, meshes, unilateral=True)
+    plan = _Plan(scene, measured, curved, True)
+    response = _refined(plan, wanted, meshes)
     spread = None
     if float(np.min(response.field.minimum)) <= 0.0:
         if scene.air is None:
             warnings.append("the cable goes slack and the scene has no air drag: peaks may be far too high")
-        warnings.append(
-            "the cable goes slack: this replay moves along the cable only, a slack cable also bows sideways, "
-            "and its peaks may be off by tens of percent"
-        )
+        if not curved:
+            warnings.append(
+                "the cable goes slack: this replay moves along the cable only, a slack cable also bows "
+                "sideways, and its peaks may be off by tens of percent"
+            )
         if scene.cable.axial_damping_time is None:
-            spread = _damping_spread(scene, measured)
+            spread = _damping_spread(plan)
     return replace(
         response,
         wall=time.perf_counter() - began,
@@ -92,31 +130,36 @@ def solve(
     )
 
 
-def _refined(
-    scene: Scene,
-    measured: MeasuredMotion | None,
-    tolerance: float,
-    meshes: tuple[int, ...],
-    *,
-    unilateral: bool,
-) -> Response:
+def _check_curved(scene: Scene, fidelity: Fidelity) -> None:
+    """Refuse what the planar march would leave out."""
+    left_out = {
+        "the linear model of a curved cable": fidelity == "linear",
+        "a lift given as a force": scene.top.lift is not None,
+        "bending stiffness": scene.cable.bending_stiffness > 0.0,
+    }
+    for what in (name for name, wanted in left_out.items() if wanted):
+        message = f"scene {scene.name!r}: {what} is not in this version"
+        raise DataError(message, "leave it out, and let the fidelity be auto or nonlinear")
+
+
+def _refined(plan: _Plan, tolerance: float, meshes: tuple[int, ...]) -> Response:
     """Refine until two neighbouring meshes agree, the meshes end, or the steps run out."""
-    coarse = run_axial(scene, meshes[0], unilateral=unilateral, measured=measured)
+    coarse = plan.march(meshes[0])
     if len(meshes) == 1:
-        return _response(scene, coarse, meshes[0], np.nan, Status.OK, unilateral=unilateral)
+        return _response(plan, coarse, meshes[0], np.nan, Status.OK)
     error, status, used = np.inf, Status.TOLERANCE_NOT_MET, meshes[0]
     for cells_now in meshes[1:]:
-        if cells_now * step_count(scene, cells_now, unilateral=unilateral) > _NODE_STEP_LIMIT:
+        if cells_now * plan.steps(cells_now) > _NODE_STEP_LIMIT:
             status = Status.STEP_LIMIT
             break
-        fine = run_axial(scene, cells_now, unilateral=unilateral, measured=measured)
-        slack = unilateral and float(np.min(fine.field.minimum)) <= 0.0
+        fine = plan.march(cells_now)
+        slack = plan.unilateral and float(np.min(fine.field.minimum)) <= 0.0
         error = relative_difference(coarse.tension, fine.tension) / (1.0 if slack else _SECOND_ORDER)
         coarse, used = fine, cells_now
         if error <= tolerance:
             status = Status.OK
             break
-    return _response(scene, coarse, used, error, status, unilateral=unilateral)
+    return _response(plan, coarse, used, error, status)
 
 
 def relative_difference(tension: FloatArray, reference: FloatArray) -> float:
@@ -150,31 +193,30 @@ def slack_intervals(time_axis: FloatArray, tension: FloatArray) -> tuple[tuple[f
     )
 
 
-def _damping_spread(scene: Scene, measured: MeasuredMotion | None) -> float:
+def _damping_spread(plan: _Plan) -> float:
     """Return the largest relative change of the peak over the believable damping times.
 
     On the coarsest mesh: an explicit march pays for damping with steps in proportion to the mesh squared.
     """
 
     def peak(damping_time: float) -> float:
-        damped = replace(scene, cable=replace(scene.cable, axial_damping_time=damping_time))
-        return float(np.max(run_axial(damped, MESHES[0], unilateral=True, measured=measured).tension))
+        cable = replace(plan.scene.cable, axial_damping_time=damping_time)
+        damped = replace(plan, scene=replace(plan.scene, cable=cable))
+        return float(np.max(damped.march(MESHES[0]).tension))
 
     nominal = peak(0.0)
     return max(abs(peak(damping_time) - nominal) for damping_time in _DAMPING_BAND) / nominal
 
 
-def _response(
-    scene: Scene, solution: AxialSolution, cells: int, error: float, status: Status, *, unilateral: bool
-) -> Response:
+def _response(plan: _Plan, solution: AxialSolution, cells: int, error: float, status: Status) -> Response:
     if solution.steps_done < solution.steps:
         status = Status.NOT_FINITE
-    gauges = np.asarray(scene.output.gauges, dtype=np.float64)
+    gauges = np.asarray(plan.scene.output.gauges, dtype=np.float64)
     return Response(
-        scene=scene,
+        scene=plan.scene,
         status=status,
-        fidelity="nonlinear" if unilateral else "linear",
-        scheme="leapfrog on the material mesh" + (", limited viscosity" if unilateral else ""),
+        fidelity="nonlinear" if plan.unilateral else "linear",
+        scheme=plan.scheme,
         cells=cells,
         time_step=solution.time_step,
         wall=0.0,
@@ -186,7 +228,7 @@ def _response(
         field=solution.field,
         error=ErrorBudget(numerical=error),
         slack={
-            float(gauge): slack_intervals(solution.time, solution.tension[:, g]) if unilateral else ()
+            float(gauge): slack_intervals(solution.time, solution.tension[:, g]) if plan.unilateral else ()
             for g, gauge in enumerate(gauges)
         },
     )

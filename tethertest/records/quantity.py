@@ -38,7 +38,11 @@ class SI:
             if wrong:
                 unit = "" if self.unit == "1" else f" {self.unit}"
                 message = f"found {text!r}, expected {words} {bound:g}{unit}"
-                raise QuantityError(message, "correct the value")
+                forgotten = self.unit == "1" and words == "at most" and not isinstance(text, str)
+                remedy = (
+                    f'correct the value; per cent is text: "{text} %"' if forgotten else "correct the value"
+                )
+                raise QuantityError(message, remedy)
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:

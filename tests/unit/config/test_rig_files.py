@@ -137,7 +137,7 @@ MISTAKES = {
         'peak_tension = "10 %"',
         "peak_tension = 10",
         "limits.peak_tension",
-        "expected at most 1",
+        'expected at most 1\n  fix: correct the value; per cent is text: "10 %"',
     ),
     "sensitivity in V/V": (
         'sensitivity = "2 mV/V"',

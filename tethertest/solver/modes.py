@@ -7,6 +7,7 @@ import numpy as np
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Modes, NaturalFrequency
 from tethertest.records.scene import Scene
+from tethertest.solver.coupled_modes import coupled_modes
 from tethertest.solver.rest import RestState, rest_state
 
 #: cells of the chain; the third frequency is then within 0.1 % of the continuous cable's
@@ -19,7 +20,7 @@ def modes(scene: Scene, count: int = 3) -> Modes:
     Parameters
     ----------
     scene : Scene
-        Geometry "vertical" or "straight".
+        Geometry "vertical", "straight" or "shallow".
     count : int
         How many of each kind.
 
@@ -28,6 +29,8 @@ def modes(scene: Scene, count: int = 3) -> Modes:
     Modes
         The lowest lateral mode of a body that is free sideways is named "pendulum".
     """
+    if scene.geometry.kind == "shallow":
+        return coupled_modes(scene, count)
     rest = rest_state(scene)
     centres = (np.arange(_CELLS) + 0.5) / _CELLS
     tension = rest.bottom_tension + centres * rest.weight

@@ -14,6 +14,7 @@ from tethertest.records.response import ErrorBudget, Response, Status
 from tethertest.records.scene import MeasuredMotion, Scene
 from tethertest.solver.axial import AxialSolution, run_axial, step_count
 from tethertest.solver.planar import planar_case, planar_step, run_planar
+from tethertest.solver.shallow import solve_shallow
 
 Fidelity = Literal["auto", "linear", "nonlinear"]
 
@@ -76,8 +77,8 @@ def solve(
     measured : MeasuredMotion, optional
         Bottom displacement, for ``motion = "measured"``.
     fidelity : {"auto", "linear", "nonlinear"}
-        "auto" runs the linear model of a vertical or straight cable and moves up when it went slack in it; a
-        curved cable has the nonlinear model only.
+        "auto" runs the linear model of a vertical or straight cable and moves up when it went slack in it,
+        and the nonlinear model of a curved one. "linear" takes a shallow cable to the exact transform.
     tolerance : float, optional
         Relative error wanted; the scene's own if absent.
     cells : int, optional
@@ -99,6 +100,8 @@ def solve(
     wanted = scene.accuracy.tolerance if tolerance is None else tolerance
     meshes = (cells,) if cells is not None else tuple(mesh for mesh in MESHES if mesh <= finest)
     warnings: list[str] = []
+    if scene.geometry.kind == "shallow" and fidelity == "linear":
+        return replace(solve_shallow(scene, measured, wanted), wall=time.perf_counter() - began)
     curved = scene.geometry.kind in _CURVED
     if curved:
         _check_curved(scene, fidelity)
@@ -133,7 +136,7 @@ def solve(
 def _check_curved(scene: Scene, fidelity: Fidelity) -> None:
     """Refuse what the planar march would leave out."""
     left_out = {
-        "the linear model of a curved cable": fidelity == "linear",
+        "the linear model of a cable between two ends": fidelity == "linear",
         "a lift given as a force": scene.top.lift is not None,
         "bending stiffness": scene.cable.bending_stiffness > 0.0,
     }

@@ -17,7 +17,7 @@ RATE_FACTOR = 50.0
 BEYOND_SHARE = 0.5
 #: a hole in the bottom motion is bridged by a straight line: over this share of a drive period that changes
 #: the tension by some 5 %
-LONGEST_HOLE = 0.07
+LONGEST_HOLE = 0.05
 #: kinds without which nothing can be compared; a dead grating is one of several and is left out
 NEEDED = ("tension", "displacement")
 

@@ -11,8 +11,8 @@ from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.solver import rest_state
-from tethertest.solver.axial import run_axial
-from tethertest.solver.transfer import tension_transfer
+from tethertest.solver.nonlinear.axial import run_axial
+from tethertest.solver.linear.transfer import tension_transfer
 
 FREQUENCY = 5.0
 AMPLITUDE = 1e-4

@@ -12,14 +12,14 @@ from scipy.linalg import eigh_tridiagonal, expm
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
-from tethertest.solver.coupled import (
+from tethertest.solver.linear.coupled import (
     CoupledCable,
     EndBody,
     system_matrix,
     undamped_transfer,
     wave_number_squares,
 )
-from tethertest.solver.coupled_modes import (
+from tethertest.solver.modal.coupled_modes import (
     coupled_modes,
     hanging_frequencies,
     in_plane_count,

@@ -11,10 +11,10 @@ import pytest
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
-from tethertest.solver.coupled import coupled_cable
-from tethertest.solver.coupled_solve import solve_coupled
+from tethertest.solver.linear.coupled import coupled_cable
+from tethertest.solver.linear.coupled_solve import solve_coupled
 from tethertest.solver.motion import displacement
-from tethertest.solver.transform import exact_response
+from tethertest.solver.linear.transform import exact_response
 
 GAUGES = (0.0, 0.25, 0.5, 0.75, 1.0)
 RAMPED = Bottom("harmonic", amplitude=2.0, frequency=0.18, start="ramp", ramp=10.0)

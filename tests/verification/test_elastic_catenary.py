@@ -9,8 +9,8 @@ import pytest
 
 from tethertest.errors import DataError
 from tethertest.kernels.planar import PlanarLine
-from tethertest.solver.catenary_shape import catenary_between, catenary_of_rest_length, shallow_catenary
-from tethertest.solver.chain_rest import chain_rest
+from tethertest.solver.statics.catenary_shape import catenary_between, catenary_of_rest_length, shallow_catenary
+from tethertest.solver.statics.chain_rest import chain_rest
 
 WEIGHT = np.array([0.0, -0.4747])
 

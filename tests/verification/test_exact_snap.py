@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tethertest.kernels.axial import Line, Record, TopEnd, march
-from tethertest.solver.axial import VISCOSITY, courant_limit
+from tethertest.solver.nonlinear.axial import VISCOSITY, courant_limit
 
 STIFFNESS, MASS, LENGTH = 10020.0, 0.0484, 3.0
 
@@ -60,7 +60,7 @@ def test_vertical_snap_meets_the_entropy_solution_and_not_the_one_without_dissip
     """150 m cable, 50 N, 2 m at 0.2 Hz: 20 ms mean peaks at 332 +- 3 N; a lossless scheme says 417 N."""
     from tethertest.records.cable import Cable
     from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
-    from tethertest.solver.axial import run_axial
+    from tethertest.solver.nonlinear.axial import run_axial
 
     scene = Scene(
         name="vertical snap",

@@ -15,7 +15,7 @@ from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, MeasuredMotion, Output, Scene, Top
-from tethertest.solver.coupled import (
+from tethertest.solver.linear.coupled import (
     CoupledCable,
     EndBody,
     coupled_cable,
@@ -24,11 +24,11 @@ from tethertest.solver.coupled import (
     local_direction,
     system_matrix,
 )
-from tethertest.solver.coupled_solve import solve_coupled
-from tethertest.solver.coupled_transfer import strain_transfer
+from tethertest.solver.linear.coupled_solve import solve_coupled
+from tethertest.solver.linear.coupled_transfer import strain_transfer
 from tethertest.solver.motion import displacement
-from tethertest.solver.transfer import tension_transfer
-from tethertest.solver.transform import exact_response
+from tethertest.solver.linear.transfer import tension_transfer
+from tethertest.solver.linear.transform import exact_response
 
 GAUGES = (0.0, 0.25, 0.5, 0.75, 1.0)
 RAMPED = Bottom("harmonic", amplitude=2.0, frequency=0.18, start="ramp", ramp=10.0)

@@ -11,9 +11,9 @@ import pytest
 from tethertest.errors import DataError
 from tethertest.records.cable import Air, Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
-from tethertest.solver.axial import AxialSolution, run_axial
-from tethertest.solver.catenary_shape import ElasticCatenary
-from tethertest.solver.planar import planar_case, run_planar
+from tethertest.solver.nonlinear.axial import AxialSolution, run_axial
+from tethertest.solver.statics.catenary_shape import ElasticCatenary
+from tethertest.solver.nonlinear.planar import planar_case, run_planar
 
 CABLE = Cable(3.0, "unstretched", 0.0484, axial_stiffness=10020.0, diameter=0.006)
 RIG = Scene(

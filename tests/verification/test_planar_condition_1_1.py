@@ -15,8 +15,8 @@ import pytest
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
-from tethertest.solver.axial import AxialSolution
-from tethertest.solver.planar import run_planar
+from tethertest.solver.nonlinear.axial import AxialSolution
+from tethertest.solver.nonlinear.planar import run_planar
 
 LENGTH, MASS, STIFFNESS = 149.164, 0.033520, 120.17
 COURANT = {False: 1.0, True: 0.9}

@@ -12,9 +12,9 @@ from tethertest.kernels import planar
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Air, Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
-from tethertest.solver import planar as planar_solver
+from tethertest.solver.nonlinear import planar as planar_solver
 from tethertest.solver.motion import displacement
-from tethertest.solver.planar import run_planar
+from tethertest.solver.nonlinear.planar import run_planar
 
 STRAIN = 0.3
 

@@ -10,7 +10,7 @@ from tethertest.records.run import Run
 from tethertest.records.scene import Scene
 from tethertest.solver import modes
 from tethertest.solver.motion import crank_slider
-from tethertest.solver.transfer import tension_transfer
+from tethertest.solver.linear.transfer import tension_transfer
 
 #: highest integer order for which a crank harmonic is stated
 _HIGHEST_ORDER = 5

@@ -7,7 +7,7 @@ from tethertest.records.rig import Rig
 from tethertest.records.run import Run
 from tethertest.records.scene import Accuracy, Bottom, Geometry, Output, Scene, Top
 from tethertest.solver import MESHES
-from tethertest.solver.axial import step_count
+from tethertest.solver.nonlinear.axial import step_count
 
 #: relative error that the replay asks of the solver
 REPLAY_TOLERANCE = 0.01

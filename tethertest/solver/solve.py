@@ -12,9 +12,9 @@ from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import ErrorBudget, Response, Status
 from tethertest.records.scene import MeasuredMotion, Scene
-from tethertest.solver.axial import AxialSolution, run_axial, step_count
-from tethertest.solver.planar import planar_case, planar_step, run_planar
-from tethertest.solver.shallow import solve_shallow
+from tethertest.solver.nonlinear.axial import AxialSolution, run_axial, step_count
+from tethertest.solver.nonlinear.planar import planar_case, planar_step, run_planar
+from tethertest.solver.linear.shallow import solve_shallow
 
 Fidelity = Literal["auto", "linear", "nonlinear"]
 

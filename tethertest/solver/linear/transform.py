@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tethertest.records.arrays import FloatArray
-from tethertest.solver.coupled import ComplexArray, CoupledCable, EndBody
-from tethertest.solver.coupled_fronts import check_sudden, kink_spectrum, start_velocity, straight_strains
-from tethertest.solver.coupled_transfer import strain_transfer
+from tethertest.solver.linear.coupled import ComplexArray, CoupledCable, EndBody
+from tethertest.solver.linear.coupled_fronts import check_sudden, kink_spectrum, start_velocity, straight_strains
+from tethertest.solver.linear.coupled_transfer import strain_transfer
 
 #: period of the transform over the duration; the input ends within the difference
 _PERIOD = 2.0

@@ -8,7 +8,7 @@ import numpy as np
 
 from tethertest.records.response import ErrorBudget, Field, Response, Status
 from tethertest.records.scene import MeasuredMotion, Scene
-from tethertest.solver.coupled_solve import solve_coupled
+from tethertest.solver.linear.coupled_solve import solve_coupled
 
 #: places of the field, both ends included
 _STATIONS = 41

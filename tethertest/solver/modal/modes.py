@@ -7,8 +7,8 @@ import numpy as np
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Modes, NaturalFrequency
 from tethertest.records.scene import Scene
-from tethertest.solver.coupled_modes import coupled_modes
-from tethertest.solver.rest import RestState, rest_state
+from tethertest.solver.modal.coupled_modes import coupled_modes
+from tethertest.solver.statics.rest import RestState, rest_state
 
 #: cells of the chain; the third frequency is then within 0.1 % of the continuous cable's
 _CELLS = 200

@@ -20,7 +20,7 @@ import numpy as np
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Modes, NaturalFrequency
 from tethertest.records.scene import Scene
-from tethertest.solver.coupled import CoupledCable, EndBody, coupled_cable, end_body, undamped_transfer
+from tethertest.solver.linear.coupled import CoupledCable, EndBody, coupled_cable, end_body, undamped_transfer
 
 #: halvings of a bracket; the frequencies are then exact to rounding
 _HALVINGS = 52

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.scene import Scene
-from tethertest.solver.rest import rest_state
+from tethertest.solver.statics.rest import rest_state
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from tethertest.records.arrays import FloatArray
 from tethertest.records.scene import Scene
-from tethertest.solver.rest import rest_state
+from tethertest.solver.statics.rest import rest_state
 
 
 def tension_transfer(scene: Scene, frequency: FloatArray, gauges: FloatArray) -> npt.NDArray[np.complex128]:

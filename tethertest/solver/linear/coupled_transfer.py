@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from tethertest.records.arrays import FloatArray
-from tethertest.solver.coupled import (
+from tethertest.solver.linear.coupled import (
     ComplexArray,
     CoupledCable,
     EndBody,

@@ -14,7 +14,7 @@ import numpy as np
 
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
-from tethertest.solver.coupled import ComplexArray, CoupledCable, EndBody
+from tethertest.solver.linear.coupled import ComplexArray, CoupledCable, EndBody
 
 #: largest share of the motion's velocity that may be there at the first instant and still count as smooth
 _SUDDEN = 0.02

@@ -10,9 +10,9 @@ import numpy as np
 
 from tethertest.records.arrays import FloatArray
 from tethertest.records.scene import MeasuredMotion, Scene
-from tethertest.solver.coupled import coupled_cable, end_angle, end_body, local_direction
+from tethertest.solver.linear.coupled import coupled_cable, end_angle, end_body, local_direction
 from tethertest.solver.motion import displacement
-from tethertest.solver.transform import CoupledResponse, refined_response
+from tethertest.solver.linear.transform import CoupledResponse, refined_response
 
 
 @dataclass(frozen=True, slots=True, eq=False)

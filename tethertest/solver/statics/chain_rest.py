@@ -14,7 +14,7 @@ import numpy as np
 from tethertest.errors import DataError
 from tethertest.kernels.planar import PlanarLine, drag_nodes
 from tethertest.records.arrays import FloatArray, frozen
-from tethertest.solver.catenary_shape import ElasticCatenary
+from tethertest.solver.statics.catenary_shape import ElasticCatenary
 
 #: relative change of the wind's drag at which its shape counts as found
 _SETTLED = 1e-12

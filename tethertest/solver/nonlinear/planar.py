@@ -12,16 +12,16 @@ from tethertest.kernels.planar import PlanarLine, PlanarTop, march_plane
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Field
 from tethertest.records.scene import MeasuredMotion, Scene
-from tethertest.solver.axial import VISCOSITY, AxialSolution, courant_limit, empty_record
-from tethertest.solver.catenary_shape import (
+from tethertest.solver.nonlinear.axial import VISCOSITY, AxialSolution, courant_limit, empty_record
+from tethertest.solver.statics.catenary_shape import (
     ElasticCatenary,
     catenary_between,
     catenary_of_rest_length,
     shallow_catenary,
 )
-from tethertest.solver.chain_rest import ChainRest, chain_rest
+from tethertest.solver.statics.chain_rest import ChainRest, chain_rest
 from tethertest.solver.motion import displacement
-from tethertest.solver.rest import rest_state
+from tethertest.solver.statics.rest import rest_state
 
 #: geometries whose rest is known from the ends or the tension
 GEOMETRIES = ("shallow", "ends", "vertical")

@@ -13,7 +13,7 @@ from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Field
 from tethertest.records.scene import MeasuredMotion, Scene
 from tethertest.solver.motion import displacement
-from tethertest.solver.rest import RestState, rest_state
+from tethertest.solver.statics.rest import RestState, rest_state
 
 #: limited linear viscosity of the nonlinear scheme; the slack law needs a scheme that loses energy at fronts
 VISCOSITY = 0.1

@@ -1,0 +1,1 @@
+"""Natural frequencies and shapes about rest."""

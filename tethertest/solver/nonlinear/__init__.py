@@ -1,0 +1,1 @@
+"""The geometrically exact cable, taut or slack, marched on its material mesh."""

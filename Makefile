@@ -19,13 +19,15 @@ report: setup  ## the main job on one run: reports/<run>/report.html
 	$(BIN)/tethertest report $(RUN)
 
 test: setup  ## the tests
-	$(BIN)/python -m pytest -n $(JOBS) -m "not browser and not verify"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "not browser and not verify"
 
 verify: setup  ## every run of the campaign against its truth, and the long batteries
-	$(BIN)/python -m pytest -m verify
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m verify
 	$(BIN)/python datasets/check_rig3m.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tethertest.studies.coverage 300 reports/error-coverage.md
 
-bench: setup  ## timings of whole processes
+bench: setup  ## speed against error, stability, timings of whole processes
+	$(BIN)/tethertest bench --stability
 	$(BIN)/python tests/benchmarks/whole_processes.py
 
 lint: setup  ## style, types, layers

@@ -11,8 +11,8 @@ from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.solver import rest_state
-from tethertest.solver.nonlinear.axial import run_axial
 from tethertest.solver.linear.transfer import tension_transfer
+from tethertest.solver.nonlinear.chain_march import run_chain
 
 FREQUENCY = 5.0
 AMPLITUDE = 1e-4
@@ -37,12 +37,12 @@ def complex_amplitude(time: FloatArray, values: FloatArray, frequency: float) ->
     return complex(cosine, -sine)
 
 
-@pytest.mark.parametrize("unilateral", [False, True])
-def test_march_meets_the_closed_form_in_amplitude_and_phase(unilateral: bool) -> None:
+@pytest.mark.parametrize("viscous", [False, True])
+def test_march_meets_the_closed_form_in_amplitude_and_phase(viscous: bool) -> None:
     scene = rig(hover_stiffness=50.0, hover_damping=5.0)
     gauges = np.array(scene.output.gauges)
     exact = tension_transfer(scene, np.array([FREQUENCY]), gauges)[0] * AMPLITUDE
-    solution = run_axial(scene, 40, unilateral=unilateral)
+    solution = run_chain(scene, 40, viscous=viscous)
     steady = solution.time > 8.0
     for g in range(gauges.size):
         # the drive is A sin(wt) = A Re(-i exp(iwt))
@@ -56,7 +56,7 @@ def test_march_is_of_second_order_in_the_cells() -> None:
     exact = tension_transfer(scene, np.array([FREQUENCY]), np.array([0.0]))[0, 0] * AMPLITUDE
     errors = []
     for cells in (10, 20, 40):
-        solution = run_axial(scene, cells, unilateral=False)
+        solution = run_chain(scene, cells, viscous=False)
         steady = solution.time > 8.0
         found = complex_amplitude(solution.time[steady], solution.tension[steady, 0], FREQUENCY)
         errors.append(abs(abs(found) - abs(exact)))
@@ -81,7 +81,7 @@ def test_fixed_top_at_low_frequency_is_a_spring() -> None:
 def test_a_cable_without_motion_stays_at_its_rest_tension() -> None:
     scene = replace(rig(), bottom=Bottom("fixed"), air=None)
     rest = rest_state(scene)
-    solution = run_axial(scene, 20, unilateral=True)
+    solution = run_chain(scene, 20)
     expected = [rest.bottom_tension, rest.tension(0.5), 5.0]
     np.testing.assert_allclose(solution.tension, np.broadcast_to(expected, solution.tension.shape), atol=1e-9)
     np.testing.assert_allclose(solution.strain, 0.0, atol=1e-12)

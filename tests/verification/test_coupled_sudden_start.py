@@ -13,8 +13,8 @@ from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.solver.linear.coupled import coupled_cable
 from tethertest.solver.linear.coupled_solve import solve_coupled
-from tethertest.solver.motion import displacement
 from tethertest.solver.linear.transform import exact_response
+from tethertest.solver.motion import displacement
 
 GAUGES = (0.0, 0.25, 0.5, 0.75, 1.0)
 RAMPED = Bottom("harmonic", amplitude=2.0, frequency=0.18, start="ramp", ramp=10.0)

@@ -8,9 +8,14 @@ import numpy as np
 import pytest
 
 from tethertest.errors import DataError
-from tethertest.kernels.planar import PlanarLine
-from tethertest.solver.statics.catenary_shape import catenary_between, catenary_of_rest_length, shallow_catenary
-from tethertest.solver.statics.chain_rest import chain_rest
+from tethertest.records.cable import Air, Cable
+from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
+from tethertest.solver.statics.catenary_shape import (
+    catenary_between,
+    catenary_of_rest_length,
+    shallow_catenary,
+)
+from tethertest.solver.statics.equilibrium import rest_chain
 
 WEIGHT = np.array([0.0, -0.4747])
 
@@ -101,9 +106,17 @@ def test_a_length_at_rest_below_the_distance_of_the_ends_is_an_error() -> None:
         catenary_of_rest_length(np.array([100.0, 0.0]), 99.0, 1e4, np.array([0.0, -10.0]))
 
 
-def chain_line(cells: int, **air: float) -> PlanarLine:
-    values = {"normal_drag": 0.0, "tangential_drag": 0.0, "wind_x": 0.0, "wind_z": 0.0, **air}
-    return PlanarLine(144.0 / cells, 0.048, 410020.0, 0.0, 0.1, 0.0, -9.80665, **values)
+def ends(top: tuple[float, float], wind: float = 0.0) -> Scene:
+    return Scene(
+        name="144 m between ends",
+        cable=Cable(144.0, "unstretched", 0.048, axial_stiffness=410020.0, diameter=0.006),
+        geometry=Geometry("ends", top=top),
+        bottom=Bottom("fixed"),
+        top=Top("fixed"),
+        output=Output(1.0, 1.0, (0.0, 1.0)),
+        air=Air(1.225, 1.2, 0.0, wind=wind),
+        gravity=9.80665,
+    )
 
 
 def test_chain_tends_to_the_catenary_with_the_square_of_the_cell() -> None:
@@ -111,24 +124,23 @@ def test_chain_tends_to_the_catenary_with_the_square_of_the_cell() -> None:
     shape = catenary_between(chord, 144.0, 410020.0, np.array([0.0, -0.048 * 9.80665]))
     errors = []
     for cells in (20, 40, 80):
-        rest = chain_rest(shape, cells, chain_line(cells), chord)
-        assert np.hypot(rest.x[-1] - 110.0, rest.z[-1] - 90.0) < 1e-9
+        rest = rest_chain(ends((110.0, 90.0)), cells)
+        assert np.hypot(rest.nodes[-1, 0] - 110.0, rest.nodes[-1, 2] - 90.0) < 1e-9
         loads = np.diff(rest.force, axis=0)
         assert loads == pytest.approx(
-            np.tile([0.0, 0.048 * 9.80665 * 144.0 / cells], (cells - 1, 1)), abs=1e-9
+            np.tile([0.0, 0.0, 0.048 * 9.80665 * 144.0 / cells], (cells - 1, 1)), abs=1e-9
         )
-        errors.append(float(np.linalg.norm(rest.start_force - shape.start_force)))
+        errors.append(float(np.linalg.norm(rest.start_force[[0, 2]] - shape.start_force)))
     assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx(2.0, abs=0.1)
 
 
 def test_wind_bows_a_taut_level_cable_like_a_side_load() -> None:
     """A vertical taut cable in a side wind: the drag of a nearly straight cable is uniform."""
     drag, wind = 0.5 * 1.225 * 1.2 * 0.006, 3.0
-    line = chain_line(40, normal_drag=drag, wind_x=wind)
-    chord = np.array([0.0, 144.4])
-    still = catenary_between(chord, 144.0, 410020.0, np.array([0.0, -0.048 * 9.80665]))
-    rest = chain_rest(still, 40, line, chord)
-    blown = catenary_between(chord, 144.0, 410020.0, np.array([drag * wind**2, -0.048 * 9.80665]))
-    assert rest.start_force == pytest.approx(blown.start_force, rel=2e-3)
-    assert rest.x[20] == pytest.approx(blown.position(np.array([72.0]))[0][0], rel=5e-3)
-    assert rest.x[20] > 0.0
+    rest = rest_chain(ends((0.0, 144.4), wind), 40)
+    blown = catenary_between(
+        np.array([0.0, 144.4]), 144.0, 410020.0, np.array([drag * wind**2, -0.048 * 9.80665])
+    )
+    assert rest.start_force[[0, 2]] == pytest.approx(blown.start_force, rel=2e-3)
+    assert rest.nodes[20, 0] == pytest.approx(blown.position(np.array([72.0]))[0][0], rel=5e-3)
+    assert rest.nodes[20, 0] > 0.0

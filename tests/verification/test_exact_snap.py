@@ -7,8 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from tethertest.kernels.axial import Line, Record, TopEnd, march
-from tethertest.solver.nonlinear.axial import VISCOSITY, courant_limit
+from tethertest.kernels.march import Line, UpperEnd, march
+from tethertest.kernels.record import Record
+from tethertest.records.cable import Cable
+from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
+from tethertest.solver.nonlinear.chain_march import run_chain
+from tethertest.solver.nonlinear.limits import VISCOSITY, courant_limit
 
 STIFFNESS, MASS, LENGTH = 10020.0, 0.0484, 3.0
 
@@ -16,28 +20,30 @@ STIFFNESS, MASS, LENGTH = 10020.0, 0.0484, 3.0
 def pulled_slack_cable(slack: float, speed: float, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Pull the bottom end of a slack straight cable at rest downwards; tension at the fixed top over time."""
     cell, wave_speed = LENGTH / cells, math.sqrt(STIFFNESS / MASS)
-    step = courant_limit(VISCOSITY, 0.0, wave_speed, cell) * cell / wave_speed
+    none, nothing = np.zeros(1), np.zeros((0, 1))
+    line = Line(cell, MASS, STIFFNESS, 0.0, 0.0, VISCOSITY, 0.0, none, 0.0, 0.0)
+    top = UpperEnd(True, 0.0, none, none, none, nothing, np.zeros(0))
+    step = courant_limit(line, top) * cell / wave_speed
     strain = 0.5 * (-slack + math.sqrt(slack**2 + 4 * speed**2 / wave_speed**2))
     front = speed / (strain + slack)
     steps = int(1.5 * LENGTH / front / step)
     bottom = -speed * step * np.arange(steps + 2)
-    position = (1.0 - slack) * cell * np.arange(cells + 1)
-    line = Line(cell, MASS, STIFFNESS, 0.0, VISCOSITY, 0.0, 0.0, True)
-    top = TopEnd(True, 0.0, 0.0, 0.0, 0.0, float(position[-1]))
+    position = (1.0 - slack) * cell * np.arange(cells + 1)[None]
     rows = steps - 2
     record = Record(
         step,
         steps,
         np.array([cells // 2, cells], dtype=np.int64),
         np.array([0.0, 1.0]),
-        np.zeros((rows, 2)),
-        np.zeros((rows, 2)),
+        np.array([0, cells - 1], dtype=np.int64),
+        np.ones(2),
+        np.zeros((rows, 2, 2)),
         np.zeros(rows),
         np.full((1, cells + 2), -np.inf),
         np.full((1, cells + 2), np.inf),
     )
-    assert march(bottom, position, line, top, step, record) == steps
-    return step * np.arange(rows), record.tension
+    assert march(bottom, np.ones(1), position, line, top, np.zeros((1, 1)), step, record) == steps
+    return step * np.arange(rows), record.rows[..., 0]
 
 
 @pytest.mark.parametrize(("slack", "speed"), [(1e-4, 1.0), (1e-3, 1.0), (1e-2, 1.0), (0.05, 2.5)])
@@ -58,10 +64,6 @@ def test_front_and_fixed_end_tension_are_exact(slack: float, speed: float) -> No
 
 def test_vertical_snap_meets_the_entropy_solution_and_not_the_one_without_dissipation() -> None:
     """150 m cable, 50 N, 2 m at 0.2 Hz: 20 ms mean peaks at 332 +- 3 N; a lossless scheme says 417 N."""
-    from tethertest.records.cable import Cable
-    from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
-    from tethertest.solver.nonlinear.axial import run_axial
-
     scene = Scene(
         name="vertical snap",
         cable=Cable(150.0, "unstretched", 0.0484, axial_stiffness=STIFFNESS),
@@ -70,5 +72,5 @@ def test_vertical_snap_meets_the_entropy_solution_and_not_the_one_without_dissip
         top=Top("fixed"),
         output=Output(40.0, 1000.0, (1.0,)),
     )
-    tension = run_axial(scene, 1280, unilateral=True).tension[:, 0]
+    tension = run_chain(scene, 1280).tension[:, 0]
     assert np.max(np.convolve(tension, np.full(20, 0.05), "valid")) == pytest.approx(332.0, abs=4.0)

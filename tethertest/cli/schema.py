@@ -1,25 +1,37 @@
-"""``tethertest schema``: JSON schemas of the files that people write."""
+"""``tethertest schema``: JSON schemas of the files that people write, and of what commands print."""
 
 from __future__ import annotations
 
 import json
 from enum import StrEnum
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
+if TYPE_CHECKING:
+    from tethertest.readers.config_schema import FileKind
 
-class FileKind(StrEnum):
-    """Kinds of files with a schema."""
+
+class SchemaKind(StrEnum):
+    """What has a schema."""
 
     RUN = "run"
     RIG = "rig"
     PROTOTYPE = "prototype"
     SCENE = "scene"
+    SOLVE = "solve"
 
 
-def schema(kind: Annotated[FileKind, typer.Argument(help="Which file.")]) -> None:
-    """Print the JSON schema of a run, rig, prototype or scene file, for editors that check while typing."""
+def schema(kind: Annotated[SchemaKind, typer.Argument(help="A kind of file, or a command.")]) -> None:
+    """Print the JSON schema of run, rig, prototype or scene files, or of what solve --json prints."""
+    typer.echo(json.dumps(_schema(kind), indent=2, ensure_ascii=False))
+
+
+def _schema(kind: SchemaKind) -> dict[str, Any]:
+    if kind is SchemaKind.SOLVE:
+        from tethertest.pipeline.solve_summary import solve_schema
+
+        return solve_schema()
     from tethertest.readers import json_schema
 
-    typer.echo(json.dumps(json_schema(kind.value), indent=2, ensure_ascii=False))
+    return json_schema(cast("FileKind", kind.value))

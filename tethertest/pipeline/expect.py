@@ -9,8 +9,8 @@ from tethertest.records.lines import ChannelLines, Expectation
 from tethertest.records.run import Run
 from tethertest.records.scene import Scene
 from tethertest.solver import modes
-from tethertest.solver.motion import crank_slider
 from tethertest.solver.linear.transfer import tension_transfer
+from tethertest.solver.motion import crank_slider
 
 #: highest integer order for which a crank harmonic is stated
 _HIGHEST_ORDER = 5

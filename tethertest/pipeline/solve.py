@@ -1,92 +1,101 @@
-"""The solver alone: a scene file in, time series at the gauges out."""
+"""The solver alone: a scene file in, a response out."""
 
 from __future__ import annotations
 
-import io
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import cast, get_args
 
 from tethertest.errors import DataError
-from tethertest.readers import load_scene, read_log
+from tethertest.readers import load_scene
+from tethertest.readers.config_problems import suggestion
+from tethertest.readers.scene_output import size_problems
+from tethertest.readers.scene_series import read_motion, read_wind
 from tethertest.records.response import Response
-from tethertest.records.scene import MeasuredMotion, Scene
-from tethertest.solver import Fidelity, solve
-from tethertest.units import channel_scale
+from tethertest.records.scene import FieldName, Scene
+from tethertest.solver import Fidelity, LinearScheme, solve
 
 
-def solve_scene(path: Path, fidelity: Fidelity = "auto", tolerance: float | None = None) -> Response:
+def solve_scene(
+    path: Path,
+    fidelity: Fidelity = "auto",
+    tolerance: float | None = None,
+    *,
+    scheme: LinearScheme = "auto",
+    cells: int | None = None,
+    fields: Sequence[str] | None = None,
+    native_times: bool = False,
+    output: Path | None = None,
+) -> Response:
     """Solve a scene file.
 
     Parameters
     ----------
     path : Path
         Scene file.
-    fidelity : {"auto", "linear", "nonlinear"}
+    fidelity : {"auto", "catenary", "linear", "nonlinear"}
         Model wanted.
     tolerance : float, optional
         Relative error wanted; the scene's own if absent.
+    scheme : {"auto", "exact", "two-grid", "as-printed"}
+        Of the linear model.
+    cells : int, optional
+        Solve on this mesh alone, without an error estimate.
+    fields : sequence of str, optional
+        Of "position", "velocity" and "curvature"; the scene's own if absent.
+    native_times : bool
+        Answer at the scheme's own time levels in place of t = k/rate.
+    output : Path, optional
+        File that is to be written; it must be none that the scene reads.
 
     Raises
     ------
     TethertestError
-        The file, the motion it names, or the scene cannot be solved.
+        The file, a series that it names, or the scene cannot be solved.
     """
     scene = load_scene(path)
-    return solve(scene, measured=_measured_motion(scene, path), fidelity=fidelity, tolerance=tolerance)
+    if fields is not None:
+        scene = _with_fields(scene, fields)
+    if output is not None:
+        _check_output(scene, output)
+    return solve(
+        scene,
+        measured=read_motion(scene),
+        wind=read_wind(scene),
+        fidelity=fidelity,
+        scheme=scheme,
+        tolerance=tolerance,
+        cells=cells,
+        native_times=native_times,
+    )
 
 
-def response_csv(response: Response) -> str:
-    """Return the response as CSV: ``time_s,tension_N@0,...,strain@0,...``, one row per output time."""
-    gauges = [f"{gauge:g}" for gauge in response.gauges]
-    names = ["time_s", *(f"tension_N@{g}" for g in gauges), *(f"strain@{g}" for g in gauges)]
-    table = np.column_stack([response.time, response.tension, response.strain])
-    text = io.StringIO()
-    np.savetxt(text, table, fmt="%.9g", delimiter=",", header=",".join(names), comments="")
-    return text.getvalue()
+def _check_output(scene: Scene, output: Path) -> None:
+    """Refuse to write over a series that the scene reads."""
+    wind_file = None if scene.air is None else scene.air.wind_file
+    for file in (scene.bottom.file, wind_file):
+        if file is not None and output.resolve() == Path(file).resolve():
+            message = f"--output: {output} is a file that the scene reads"
+            raise DataError(message, "choose another name")
 
 
-def response_summary(response: Response) -> dict[str, Any]:
-    """Return what ``solve --json`` prints: status, scheme, error, slack, extremes, warnings."""
-    error = response.error
-    return {
-        "scene": response.scene.name,
-        "status": response.status.name.lower(),
-        "advice": response.status.value,
-        "fidelity": response.fidelity,
-        "scheme": response.scheme,
-        "cells": response.cells,
-        "time_step": response.time_step,
-        "wall_s": response.wall,
-        "error": {
-            "numerical": error.numerical if np.isfinite(error.numerical) else None,
-            "model": error.model,
-            "spread": error.spread,
-        },
-        "gauges": [
-            {
-                "at": float(gauge),
-                "minimum": float(response.tension[:, g].min()),
-                "mean": float(response.tension[:, g].mean()),
-                "maximum": float(response.tension[:, g].max()),
-            }
-            for g, gauge in enumerate(response.gauges)
-        ],
-        "slack": {f"{gauge:g}": [list(span) for span in spans] for gauge, spans in response.slack.items()},
-        "warnings": list(response.warnings),
-    }
+def _with_fields(scene: Scene, names: Sequence[str]) -> Scene:
+    """Return the scene with other fields in its output.
 
-
-def _measured_motion(scene: Scene, path: Path) -> MeasuredMotion | None:
-    bottom = scene.bottom
-    if bottom.motion != "measured" or bottom.file is None:
-        return None
-    log = read_log(path.parent / bottom.file)
-    found = next((c for c in log.channels if c.name == bottom.displacement_column), None)
-    if found is None:
-        names = ", ".join(channel.name for channel in log.channels)
-        message = f"column {bottom.displacement_column!r} is not in {bottom.file}; it has {names}"
-        raise DataError(message, "correct [bottom] displacement_column", path=path)
-    scale = channel_scale(bottom.unit or found.unit or "m", "displacement")
-    return MeasuredMotion(found.time - found.time[0], scale.factor * (found.values - found.values[0]))
+    Raises
+    ------
+    DataError
+        A name is none of a field, or so many values do not fit into memory.
+    """
+    known = get_args(FieldName)
+    for name in names:
+        if name not in known:
+            message = f"--fields: found {name!r}, expected some of {', '.join(known)}"
+            raise DataError(message, suggestion(name, known))
+    wanted = cast("tuple[FieldName, ...]", tuple(dict.fromkeys(names)))
+    output = replace(scene.output, fields=wanted)
+    for problem in size_problems(output):
+        message = f"--fields: {problem.text}"
+        raise DataError(message, problem.remedy)
+    return replace(scene, output=output)

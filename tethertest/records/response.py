@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from dataclasses import field as a_field
 from enum import Enum
 
 from tethertest.records.arrays import FloatArray
@@ -14,6 +15,15 @@ class Status(Enum):
 
     OK = "Solved within the stated error."
     TOLERANCE_NOT_MET = "The stated error is above the tolerance asked for; allow more cells or ask for less."
+    NOT_SETTLED = (
+        "The cable goes slack and its answer does not settle as the mesh is refined; give the scene air drag "
+        "and axial_damping_time, or quote the spread."
+    )
+    MODEL_ERROR = (
+        "The model leaves out more than the tolerance allows; use --fidelity auto or nonlinear, and for an "
+        "upright cable that goes slack quote its model error."
+    )
+    SLACK_IN_CATENARY = "The quasi-static cable goes slack; use --fidelity nonlinear."
     SLACK_IN_LINEAR = "The cable went slack, which the linear model cannot follow; use --fidelity nonlinear."
     STEP_LIMIT = "The run needs more steps than allowed; shorten the duration or raise the step limit."
     NOT_FINITE = "The solution left the range of numbers; check stiffness, mass and motion of the scene."
@@ -25,7 +35,9 @@ class ErrorBudget:
 
     numerical: float  #: from a pair of grids
     model: float | None = None  #: against the next fidelity
-    spread: float | None = None  #: from unknown damping when slack
+    spread: float | None = None  #: from unknown damping and straightness when slack
+    #: lowest and highest peak over the nominal one, of the members that tell the spread
+    peak_range: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +56,7 @@ class Response:
 
     scene: Scene
     status: Status
-    fidelity: str  #: "linear" or "nonlinear"
+    fidelity: str  #: "catenary", "linear" or "nonlinear"
     scheme: str
     cells: int
     time_step: float  #: [s]
@@ -58,6 +70,11 @@ class Response:
     error: ErrorBudget
     slack: dict[float, tuple[tuple[float, float], ...]]  #: gauge -> intervals [s]
     warnings: tuple[str, ...] = ()
+    #: "position", "velocity" (n, g, 3) along x, y, z and "curvature" (n, g), where the scene asks for them
+    fields: dict[str, FloatArray] = a_field(default_factory=dict)
+    #: what chose the model and bounds it: frequency ratios, dynamic over static tension, strain
+    numbers: dict[str, float] = a_field(default_factory=dict)
+    native_times: bool = False  #: `time` holds the scheme's own levels, not t = k/rate
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ Length = Annotated[float, SI("m")]
 Damping = Annotated[float, SI("N s/m", minimum=0.0)]
 Stiffness = Annotated[float, SI("N/m", minimum=0.0)]
 Area = Annotated[float, SI("m^2", minimum=0.0)]
+FieldName = Literal["position", "velocity", "curvature"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +65,7 @@ class Output:
     duration: Annotated[float, SI("s", above=0.0)]
     rate: Annotated[float, SI("Hz", above=0.0)]
     gauges: tuple[Annotated[float, SI("1", minimum=0.0, maximum=1.0)], ...]
-    fields: tuple[Literal["position", "velocity", "curvature"], ...] = ()
+    fields: tuple[FieldName, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +81,14 @@ class MeasuredMotion:
 
     time: FloatArray  #: (n,) [s], strictly increasing
     displacement: FloatArray  #: (n,) [m] along the direction of the motion, from rest
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WindSeries:
+    """Wind as data, the same all along the cable."""
+
+    time: FloatArray  #: (n,) [s], strictly increasing
+    velocity: FloatArray  #: (n, 3) [m/s] along x, y, z
 
 
 @dataclass(frozen=True, slots=True)

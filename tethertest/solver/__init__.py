@@ -1,7 +1,18 @@
-"""A Scene in, a Response out: statics, modes and axial stress waves."""
+"""A Scene in, a Response out: statics, modes, quasi-static, linear and nonlinear cables."""
 
+from tethertest.solver.linear.refine import LinearScheme
 from tethertest.solver.modal.modes import modes
+from tethertest.solver.norms import relative_difference
+from tethertest.solver.solve import MESHES, Fidelity, solve
 from tethertest.solver.statics.rest import RestState, rest_state
-from tethertest.solver.solve import MESHES, Fidelity, relative_difference, solve
 
-__all__ = ["MESHES", "Fidelity", "RestState", "modes", "relative_difference", "rest_state", "solve"]
+__all__ = [
+    "MESHES",
+    "Fidelity",
+    "LinearScheme",
+    "RestState",
+    "modes",
+    "relative_difference",
+    "rest_state",
+    "solve",
+]

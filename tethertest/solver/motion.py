@@ -1,4 +1,4 @@
-"""Motion of the bottom end: displacement from rest at any times."""
+"""Motion of the bottom end: displacement from rest, and its exact velocity, at any times."""
 
 from __future__ import annotations
 
@@ -13,6 +13,12 @@ def smooth_step(ratio: FloatArray) -> FloatArray:
     """Return the quintic that goes from 0 to 1 with two vanishing derivatives at both ends."""
     r = np.clip(ratio, 0.0, 1.0)
     return np.asarray(r**3 * (10.0 - 15.0 * r + 6.0 * r**2))
+
+
+def smooth_step_slope(ratio: FloatArray) -> FloatArray:
+    """Return the derivative of `smooth_step`."""
+    r = np.clip(ratio, 0.0, 1.0)
+    return np.asarray(30.0 * r**2 * (1.0 - r) ** 2)
 
 
 def displacement(bottom: Bottom, time: FloatArray, measured: MeasuredMotion | None = None) -> FloatArray:
@@ -45,10 +51,7 @@ def displacement(bottom: Bottom, time: FloatArray, measured: MeasuredMotion | No
     if bottom.motion == "measured":
         return _measured(t, measured)
     frequency = _need(bottom.frequency, "frequency", bottom)
-    ramp = bottom.ramp if bottom.start == "ramp" else None
-    if bottom.start == "ramp" and ramp is None:
-        message = 'motion with start = "ramp" has no ramp time'
-        raise DataError(message, 'add [bottom] ramp = "8 s"')
+    ramp = _ramp(bottom)
     if bottom.motion == "harmonic":
         amplitude = _need(bottom.amplitude, "amplitude", bottom)
         envelope = 1.0 if ramp is None else smooth_step(t / ramp)
@@ -56,6 +59,51 @@ def displacement(bottom: Bottom, time: FloatArray, measured: MeasuredMotion | No
     radius = _need(bottom.radius, "radius", bottom)
     ratio = _need(bottom.rod_ratio, "rod_ratio", bottom)
     return crank_slider(radius, ratio, _crank_angle(t, frequency, ramp))
+
+
+def velocity(bottom: Bottom, time: FloatArray, measured: MeasuredMotion | None = None) -> FloatArray:
+    """Return the bottom velocity, upwards: the derivative of `displacement` in closed form.
+
+    Parameters
+    ----------
+    bottom : Bottom
+        Motion of the scene.
+    time : (n,) float64
+        [s] from the start; the velocity is 0 before it and, at 0 itself, that just after it.
+    measured : MeasuredMotion, optional
+        Needed for ``motion = "measured"``; at rest outside its span.
+
+    Returns
+    -------
+    (n,) float64
+        [m/s].
+
+    Raises
+    ------
+    DataError
+        A key that the motion needs is missing.
+    """
+    t = np.asarray(time, dtype=np.float64)
+    begun = t >= 0.0
+    if bottom.motion == "fixed":
+        return np.zeros_like(t)
+    if bottom.motion == "step":
+        return np.where(begun, _need(bottom.velocity, "velocity", bottom), 0.0)
+    if bottom.motion == "measured":
+        return np.where(begun, _measured_velocity(t, measured), 0.0)
+    frequency = _need(bottom.frequency, "frequency", bottom)
+    angular = 2.0 * np.pi * frequency
+    ramp = _ramp(bottom)
+    share = np.ones_like(t) if ramp is None else smooth_step(t / ramp)
+    if bottom.motion == "harmonic":
+        rate = angular * np.cos(angular * t) * share
+        if ramp is not None:
+            rate += np.sin(angular * t) * smooth_step_slope(t / ramp) / ramp
+        return np.where(begun, _need(bottom.amplitude, "amplitude", bottom) * rate, 0.0)
+    radius = _need(bottom.radius, "radius", bottom)
+    ratio = _need(bottom.rod_ratio, "rod_ratio", bottom)
+    turning = angular * share
+    return np.where(begun, turning * crank_slope(radius, ratio, _crank_angle(t, frequency, ramp)), 0.0)
 
 
 def crank_slider(radius: float, rod_ratio: float, angle: FloatArray) -> FloatArray:
@@ -78,6 +126,23 @@ def crank_slider(radius: float, rod_ratio: float, angle: FloatArray) -> FloatArr
     return np.asarray(radius * (np.cos(theta) + rod - rest))
 
 
+def crank_slope(radius: float, rod_ratio: float, angle: FloatArray) -> FloatArray:
+    """Return the derivative of `crank_slider` to the angle [m/rad]; parameters as there."""
+    theta = np.asarray(angle) - 0.5 * np.pi
+    sine = np.sin(theta)
+    lean = rod_ratio * np.cos(theta) / np.sqrt(1.0 - (rod_ratio * sine) ** 2)
+    return np.asarray(-radius * sine * (1.0 + lean))
+
+
+def _ramp(bottom: Bottom) -> float | None:
+    if bottom.start != "ramp":
+        return None
+    if bottom.ramp is None:
+        message = 'motion with start = "ramp" has no ramp time'
+        raise DataError(message, 'add [bottom] ramp = "8 s"')
+    return bottom.ramp
+
+
 def _crank_angle(time: FloatArray, frequency: float, ramp: float | None) -> FloatArray:
     t = np.maximum(time, 0.0)
     if ramp is None:
@@ -90,11 +155,25 @@ def _crank_angle(time: FloatArray, frequency: float, ramp: float | None) -> Floa
 def _measured(time: FloatArray, measured: MeasuredMotion | None) -> FloatArray:
     from scipy.interpolate import CubicSpline
 
+    data = _given(measured)
+    spline = CubicSpline(data.time, data.displacement)
+    return np.asarray(spline(np.clip(time, data.time[0], data.time[-1])), dtype=np.float64)
+
+
+def _measured_velocity(time: FloatArray, measured: MeasuredMotion | None) -> FloatArray:
+    from scipy.interpolate import CubicSpline
+
+    data = _given(measured)
+    spline = CubicSpline(data.time, data.displacement)
+    inside = (time >= data.time[0]) & (time <= data.time[-1])
+    return np.where(inside, spline(time, 1), 0.0)
+
+
+def _given(measured: MeasuredMotion | None) -> MeasuredMotion:
     if measured is None:
         message = 'motion "measured" without data'
         raise DataError(message, "give the measured displacement with the scene")
-    spline = CubicSpline(measured.time, measured.displacement)
-    return np.asarray(spline(np.clip(time, measured.time[0], measured.time[-1])), dtype=np.float64)
+    return measured
 
 
 def _need(value: float | None, key: str, bottom: Bottom) -> float:

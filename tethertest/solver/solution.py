@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from dataclasses import field as a_field
 
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Field
@@ -21,4 +22,4 @@ class Solution:
     steps_done: int  #: less than `steps` where the solution left the range of numbers
     steps: int
     #: "position", "velocity" (n, g, 3) along x, y, z and "curvature" (n, g), where the scene asks for them
-    fields: dict[str, FloatArray] = field(default_factory=dict)
+    fields: dict[str, FloatArray] = a_field(default_factory=dict)

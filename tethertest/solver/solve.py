@@ -1,9 +1,9 @@
-"""A scene in, a response with its error out: choose the model, run it on two meshes, check it."""
+"""A scene in, a response with its error out: choose the model, refine it, check it."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -11,80 +11,61 @@ import numpy as np
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import ErrorBudget, Response, Status
-from tethertest.records.scene import MeasuredMotion, Scene
-from tethertest.solver.nonlinear.axial import AxialSolution, run_axial, step_count
-from tethertest.solver.nonlinear.planar import planar_case, planar_step, run_planar
-from tethertest.solver.linear.shallow import solve_shallow
+from tethertest.records.scene import MeasuredMotion, Scene, WindSeries
+from tethertest.solver.choice import Chosen, choose, judged_catenary, judged_linear
+from tethertest.solver.linear.refine import LinearScheme, refine_linear
+from tethertest.solver.nonlinear.chain_march import chain_case
+from tethertest.solver.nonlinear.refine import refine_nonlinear
+from tethertest.solver.norms import goes_slack
+from tethertest.solver.numbers import SceneNumbers, scene_numbers
+from tethertest.solver.problem import Problem
+from tethertest.solver.spread import Spread, sideways_error, slack_spread
 
-Fidelity = Literal["auto", "linear", "nonlinear"]
+Fidelity = Literal["auto", "catenary", "linear", "nonlinear"]
 
-#: meshes tried, coarse to fine; each answer is the finer of a neighbouring pair
+#: meshes that a refinement usually goes through, coarse to fine
 MESHES = (10, 20, 40, 80, 160)
-#: node-steps allowed in one march, about a minute
-_NODE_STEP_LIMIT = 1.2e10
-#: axial damping times tried when the cable goes slack and its damping is unknown [s]
-_DAMPING_BAND = (3e-4, 1e-3, 3e-3)
-#: a grid pair of a second-order scheme overestimates the finer one's error by this factor
-_SECOND_ORDER = 3.0
-#: geometries whose cable is curved: it is marched in its plane
-_CURVED = ("shallow", "ends")
-
-
-@dataclass(frozen=True, slots=True)
-class _Plan:
-    """Which march solves the scene; everything but the mesh."""
-
-    scene: Scene
-    measured: MeasuredMotion | None
-    curved: bool
-    unilateral: bool
-
-    def march(self, cells: int) -> AxialSolution:
-        """March on one mesh."""
-        if self.curved:
-            return run_planar(self.scene, cells, viscous=True, measured=self.measured)
-        return run_axial(self.scene, cells, unilateral=self.unilateral, measured=self.measured)
-
-    def steps(self, cells: int) -> int:
-        """Return the number of steps on a mesh."""
-        if self.curved:
-            step = planar_step(planar_case(self.scene, cells, viscous=True))
-            return int(self.scene.output.duration / step) + 2
-        return step_count(self.scene, cells, unilateral=self.unilateral)
-
-    @property
-    def scheme(self) -> str:
-        """Name of the scheme."""
-        base = "leapfrog on the material mesh" + (" in the plane" if self.curved else "")
-        return base + (", limited viscosity" if self.unilateral else "")
 
 
 def solve(
     scene: Scene,
     *,
     measured: MeasuredMotion | None = None,
+    wind: WindSeries | None = None,
     fidelity: Fidelity = "auto",
+    scheme: LinearScheme = "auto",
     tolerance: float | None = None,
     cells: int | None = None,
-    finest: int = MESHES[-1],
+    finest: int = 640,
+    native_times: bool = False,
+    spread: bool = True,
 ) -> Response:
-    """Solve a scene: vertical and straight cables along their axis, curved ones in their plane.
+    """Solve a scene.
 
     Parameters
     ----------
     scene : Scene
         What is to be solved.
     measured : MeasuredMotion, optional
-        Bottom displacement, for ``motion = "measured"``.
-    fidelity : {"auto", "linear", "nonlinear"}
-        "auto" runs the linear model of a vertical or straight cable and moves up when it went slack in it,
-        and the nonlinear model of a curved one. "linear" takes a shallow cable to the exact transform.
+        Bottom displacement, for ``motion = "measured"``; the velocity is made consistent with it.
+    wind : WindSeries, optional
+        Gusts, in place of the scene's steady wind.
+    fidelity : {"auto", "catenary", "linear", "nonlinear"}
+        "auto" takes the cheapest model that the scene's numbers allow, checks its assumptions on the result
+        and moves up where they broke.
+    scheme : {"auto", "exact", "two-grid", "as-printed"}
+        Of the linear model; "as-printed" reproduces the source article's scheme, which converges to the
+        wrong wave speed.
     tolerance : float, optional
         Relative error wanted; the scene's own if absent.
     cells : int, optional
         Solve on this mesh alone, without an error estimate (``error.numerical`` is NaN).
     finest : int
         Finest mesh that may be tried.
+    native_times : bool
+        Rows at the scheme's own time levels instead of k/rate.
+    spread : bool
+        Run the members that tell how far unknown damping and straightness move a slack cable's answer.
 
     Returns
     -------
@@ -94,90 +75,116 @@ def solve(
     Raises
     ------
     DataError
-        The scene is not one that these models describe.
+        The scene has no rest, or has what the model asked for leaves out.
     """
     began = time.perf_counter()
     wanted = scene.accuracy.tolerance if tolerance is None else tolerance
-    meshes = (cells,) if cells is not None else tuple(mesh for mesh in MESHES if mesh <= finest)
-    warnings: list[str] = []
-    if scene.geometry.kind == "shallow" and fidelity == "linear":
-        return replace(solve_shallow(scene, measured, wanted), wall=time.perf_counter() - began)
-    curved = scene.geometry.kind in _CURVED
-    if curved:
-        _check_curved(scene, fidelity)
-    if not curved and fidelity != "nonlinear":
-        response = _refined(_Plan(scene, measured, False, False), wanted, meshes)
-        lowest = float(np.min(response.field.minimum))
-        if lowest > 0.0 or response.status is Status.NOT_FINITE:
-            return replace(response, wall=time.perf_counter() - began)
-        if fidelity == "linear":
-            return replace(response, status=Status.SLACK_IN_LINEAR, wall=time.perf_counter() - began)
-    plan = _Plan(scene, measured, curved, True)
-    response = _refined(plan, wanted, meshes)
-    spread = None
-    if float(np.min(response.field.minimum)) <= 0.0:
-        if scene.air is None:
-            warnings.append("the cable goes slack and the scene has no air drag: peaks may be far too high")
-        if not curved:
-            warnings.append(
-                "the cable goes slack: this replay moves along the cable only, a slack cable also bows "
-                "sideways, and its peaks may be off by tens of percent"
-            )
-        if scene.cable.axial_damping_time is None:
-            spread = _damping_spread(plan)
-    return replace(
-        response,
-        wall=time.perf_counter() - began,
-        warnings=tuple(warnings),
-        error=replace(response.error, spread=spread),
+    if not 0.0 < wanted <= 1.0:
+        message = f"found a tolerance of {wanted:g}, expected more than 0 and at most 1"
+        raise DataError(message, "give a relative error such as 0.01")
+    if wind is None and scene.air is not None and scene.air.wind_file is not None:
+        message = f"scene {scene.name!r}: its wind is in a file that has not been read"
+        raise DataError(message, "give solve(scene, wind=read_wind(scene)), or leave out [air] wind_file")
+    problem = Problem(scene, wanted, measured, wind, cells, finest, native_times=native_times)
+    numbers = scene_numbers(scene, measured)
+    chosen = _chosen(problem, numbers, fidelity, scheme)
+    refined = chosen.refined
+    slack = refined.fidelity == "nonlinear" and goes_slack(refined.solution)
+    members: Spread | None = None
+    model_error = chosen.model_error
+    warnings = list(chosen.warnings)
+    if slack:
+        warnings += _slack_warnings(scene)
+        if spread and cells is None and refined.status is not Status.NOT_FINITE:
+            members = slack_spread(problem, refined.cells)
+            if len(chain_case(scene, 2, measured=measured, wind=wind).axes) == 1:
+                model_error = sideways_error(problem, refined.cells)
+                warnings.append(_sideways_warning(model_error))
+    chosen = replace(chosen, model_error=model_error, warnings=tuple(warnings))
+    return _response(problem, numbers, chosen, members, began)
+
+
+def _chosen(problem: Problem, numbers: SceneNumbers, fidelity: Fidelity, scheme: LinearScheme) -> Chosen:
+    if fidelity == "catenary":
+        return judged_catenary(problem)
+    if fidelity == "linear" or scheme != "auto":
+        refined = refine_linear(problem, scheme)
+        if problem.cells is not None:
+            return Chosen(refined, None)
+        return judged_linear(problem, numbers, refined)
+    if fidelity == "nonlinear" or problem.cells is not None:
+        return Chosen(refine_nonlinear(problem, numbers), None)
+    return choose(problem, numbers)
+
+
+def _slack_warnings(scene: Scene) -> list[str]:
+    if scene.air is None:
+        return ["slack without drag: the scene has no air drag, and peaks may be several times too high"]
+    return []
+
+
+def _sideways_warning(error: float) -> str:
+    return (
+        "the cable goes slack: this march moves along the cable only, a slack cable also bows sideways, "
+        f"which changes its tension by about {error:.0%} of its dynamic part"
     )
 
 
-def _check_curved(scene: Scene, fidelity: Fidelity) -> None:
-    """Refuse what the planar march would leave out."""
-    left_out = {
-        "the linear model of a cable between two ends": fidelity == "linear",
-        "a lift given as a force": scene.top.lift is not None,
-        "bending stiffness": scene.cable.bending_stiffness > 0.0,
-    }
-    for what in (name for name, wanted in left_out.items() if wanted):
-        message = f"scene {scene.name!r}: {what} is not in this version"
-        raise DataError(message, "leave it out, and let the fidelity be auto or nonlinear")
-
-
-def _refined(plan: _Plan, tolerance: float, meshes: tuple[int, ...]) -> Response:
-    """Refine until two neighbouring meshes agree, the meshes end, or the steps run out."""
-    coarse = plan.march(meshes[0])
-    if len(meshes) == 1:
-        return _response(plan, coarse, meshes[0], np.nan, Status.OK)
-    error, status, used = np.inf, Status.TOLERANCE_NOT_MET, meshes[0]
-    for cells_now in meshes[1:]:
-        if cells_now * plan.steps(cells_now) > _NODE_STEP_LIMIT:
-            status = Status.STEP_LIMIT
-            break
-        fine = plan.march(cells_now)
-        slack = plan.unilateral and float(np.min(fine.field.minimum)) <= 0.0
-        error = relative_difference(coarse.tension, fine.tension) / (1.0 if slack else _SECOND_ORDER)
-        coarse, used = fine, cells_now
-        if error <= tolerance:
-            status = Status.OK
-            break
-    return _response(plan, coarse, used, error, status)
-
-
-def relative_difference(tension: FloatArray, reference: FloatArray) -> float:
-    """Return the largest RMS difference of a gauge over the RMS of the largest dynamic part.
-
-    Parameters
-    ----------
-    tension, reference : (n, g) float64
-        [N].
-    """
-    dynamic = float(np.sqrt(np.max(np.mean((reference - reference[0]) ** 2, axis=0))))
-    difference = float(np.sqrt(np.max(np.mean((tension - reference) ** 2, axis=0))))
-    if dynamic <= 1e-9 * float(np.max(np.abs(reference[0]))):
-        return 0.0 if difference <= 1e-9 * float(np.max(np.abs(reference[0]))) else float("inf")
-    return difference / dynamic
+def _response(
+    problem: Problem,
+    numbers: SceneNumbers,
+    chosen: Chosen,
+    members: Spread | None,
+    began: float,
+) -> Response:
+    refined, scene = chosen.refined, problem.scene
+    solution = refined.solution
+    kept = slice(None)
+    if problem.native_times:
+        kept = slice(0, int(np.searchsorted(solution.time, scene.output.duration * (1.0 + 1e-12), "right")))
+    gauges = np.asarray(scene.output.gauges, dtype=np.float64)
+    tension = solution.tension[kept]
+    taut_model = refined.fidelity != "nonlinear"
+    status = refined.status
+    if taut_model and status is not Status.NOT_FINITE and goes_slack(solution):
+        status = Status.SLACK_IN_LINEAR if refined.fidelity == "linear" else Status.SLACK_IN_CATENARY
+    elif status is Status.OK and (refined.error + (chosen.model_error or 0.0)) > problem.tolerance:
+        status = Status.MODEL_ERROR
+    rest = tension[0]
+    return Response(
+        scene=scene,
+        status=status,
+        fidelity=refined.fidelity,
+        scheme=refined.scheme,
+        cells=refined.cells,
+        time_step=solution.time_step,
+        wall=time.perf_counter() - began,
+        time=solution.time[kept],
+        gauges=gauges,
+        tension=tension,
+        strain=solution.strain[kept],
+        platform_position=solution.platform_position[kept],
+        field=solution.field,
+        error=ErrorBudget(
+            numerical=refined.error,
+            model=chosen.model_error,
+            spread=None if members is None else members.largest,
+            peak_range=None if members is None else members.peaks,
+        ),
+        slack={
+            float(gauge): () if taut_model else slack_intervals(solution.time[kept], tension[:, g])
+            for g, gauge in enumerate(gauges)
+        },
+        warnings=chosen.warnings,
+        fields={name: values[kept] for name, values in solution.fields.items()},
+        native_times=problem.native_times,
+        numbers={
+            "drive_over_first_transverse": numbers.drive_over_first,
+            "drive_over_first_axial": numbers.drive_over_axial,
+            "dynamic_over_static": float(np.max(np.abs(tension - rest)) / np.max(rest)),
+            "largest_strain_change": float(np.max(np.abs(solution.strain))),
+        },
+    )
 
 
 def slack_intervals(time_axis: FloatArray, tension: FloatArray) -> tuple[tuple[float, float], ...]:
@@ -193,45 +200,4 @@ def slack_intervals(time_axis: FloatArray, tension: FloatArray) -> tuple[tuple[f
     return tuple(
         (float(time_axis[start]), float(time_axis[stop - 1]))
         for start, stop in zip(edges[::2], edges[1::2], strict=True)
-    )
-
-
-def _damping_spread(plan: _Plan) -> float:
-    """Return the largest relative change of the peak over the believable damping times.
-
-    On the coarsest mesh: an explicit march pays for damping with steps in proportion to the mesh squared.
-    """
-
-    def peak(damping_time: float) -> float:
-        cable = replace(plan.scene.cable, axial_damping_time=damping_time)
-        damped = replace(plan, scene=replace(plan.scene, cable=cable))
-        return float(np.max(damped.march(MESHES[0]).tension))
-
-    nominal = peak(0.0)
-    return max(abs(peak(damping_time) - nominal) for damping_time in _DAMPING_BAND) / nominal
-
-
-def _response(plan: _Plan, solution: AxialSolution, cells: int, error: float, status: Status) -> Response:
-    if solution.steps_done < solution.steps:
-        status = Status.NOT_FINITE
-    gauges = np.asarray(plan.scene.output.gauges, dtype=np.float64)
-    return Response(
-        scene=plan.scene,
-        status=status,
-        fidelity="nonlinear" if plan.unilateral else "linear",
-        scheme=plan.scheme,
-        cells=cells,
-        time_step=solution.time_step,
-        wall=0.0,
-        time=solution.time,
-        gauges=gauges,
-        tension=solution.tension,
-        strain=solution.strain,
-        platform_position=solution.platform_position,
-        field=solution.field,
-        error=ErrorBudget(numerical=error),
-        slack={
-            float(gauge): slack_intervals(solution.time, solution.tension[:, g]) if plan.unilateral else ()
-            for g, gauge in enumerate(gauges)
-        },
     )

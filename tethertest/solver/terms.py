@@ -104,3 +104,18 @@ def leaves_plane(scene: Scene) -> bool:
         scene.air.wind if scene.air is not None and isinstance(scene.air.wind, tuple) else (),
     ]
     return any(len(vector) == 3 and vector[1] != 0.0 for vector in vectors)
+
+
+def body_axes(scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """Return the axes (m, 3) along which the platform's body resists the air, and how much (m,).
+
+    The body's x axis leans down by ``tilt``; across the plane it resists as along x. The second array is
+    force per velocity squared [N s^2/m^2]; both are empty without air or area.
+    """
+    top, air = scene.top, scene.air
+    if air is None or top.drag_area is None or not any(top.drag_area):
+        return np.zeros((0, 3)), np.zeros(0)
+    cosine, sine = math.cos(top.tilt), math.sin(top.tilt)
+    axes = np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])
+    forward, upward = top.drag_area
+    return axes, 0.5 * air.density * np.array([forward, forward, upward])

@@ -79,8 +79,8 @@ def test_field_extremes_hold_the_gauges() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"geometry": Geometry("hovering")}, "not one that axial waves describe"),
-        ({"bottom": replace(SCENE.bottom, direction="horizontal")}, "not along the cable"),
+        ({"geometry": Geometry("hovering"), "top": Top("fixed")}, "has a fixed top"),
+        ({"geometry": Geometry("hovering"), "top": replace(SCENE.top, lift=9.0)}, "both lift and static"),
         ({"top": Top("platform", mass=0.4, static_tension=1.0)}, "leaves -0.42"),
         ({"top": Top("fixed")}, "no tension at rest"),
         ({"geometry": Geometry("vertical", tension=9.0)}, "says 9 N at the bottom"),

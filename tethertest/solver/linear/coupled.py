@@ -113,10 +113,12 @@ def end_angle(scene: Scene, cable: CoupledCable, fraction: float) -> float:
 def local_direction(scene: Scene, cable: CoupledCable) -> tuple[float, float]:
     """Return the (tangent, normal) components of the unit vector along which the bottom moves.
 
+    What moves across the plane is left to `tethertest.solver.linear.axial_waves.out_of_plane_slope`.
+
     Raises
     ------
     DataError
-        The direction has no length, leaves the plane, or is not along a straight cable.
+        The direction has no length, or is not along a straight cable.
     """
     direction = scene.bottom.direction
     if direction == "tangent":
@@ -128,11 +130,8 @@ def local_direction(scene: Scene, cable: CoupledCable) -> tuple[float, float]:
         raise DataError(message, 'set [bottom] direction = "tangent"')
     named = {"vertical": (0.0, 1.0), "horizontal": (1.0, 0.0)}
     vector = named[direction] if isinstance(direction, str) else direction
-    if len(vector) == 3 and vector[1] != 0.0:
-        message = f"scene {scene.name!r}: bottom motion {direction!r} leaves the plane of the cable"
-        raise DataError(message, "set the second of the three components to 0")
     horizontal, vertical = float(vector[0]), float(vector[-1])
-    size = math.hypot(horizontal, vertical)
+    size = math.sqrt(sum(component**2 for component in vector))
     if size == 0.0:
         message = f"scene {scene.name!r}: bottom motion along a vector without length"
         raise DataError(message, 'give [bottom] direction a component, for instance "tangent"')

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tethertest.records.arrays import FloatArray
 from tethertest.records.scene import MeasuredMotion, Scene
-from tethertest.solver.linear.coupled import coupled_cable, end_angle, end_body, local_direction
-from tethertest.solver.motion import displacement
+from tethertest.solver.linear.axial_waves import out_of_plane_slope
+from tethertest.solver.linear.coupled import CoupledCable, coupled_cable, end_angle, end_body, local_direction
 from tethertest.solver.linear.transform import CoupledResponse, refined_response
+from tethertest.solver.motion import displacement
+from tethertest.solver.terms import leaves_plane
+
+#: steps per traverse of the waves across the plane where a body ends the cable
+_STRING_CELLS = 50
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +60,7 @@ def solve_coupled(
     output = scene.output
     rows = math.floor(output.duration * output.rate + 1e-9) + 1
     gauges = np.asarray(output.gauges, dtype=np.float64) if stations is None else stations
-    motion = _continued(scene, measured)
+    motion = continued(scene, measured)
     response, error, factor = refined_response(
         cable,
         motion,
@@ -66,12 +71,31 @@ def solve_coupled(
         tolerance=tolerance,
         top=end_body(scene, cable),
     )
+    if leaves_plane(scene):
+        there = replace(scene, output=replace(output, gauges=tuple(float(gauge) for gauge in gauges)))
+        response = swung(response, cable, out_of_plane_slope(there, _STRING_CELLS, measured=measured))
     angle = end_angle(scene, cable, 1.0)
     upwards = response.top_displacement @ np.array([math.sin(angle), math.cos(angle)])
     return CoupledSolution(response, upwards, error, 1.0 / (output.rate * factor))
 
 
-def _continued(scene: Scene, measured: MeasuredMotion | None) -> Callable[[FloatArray], FloatArray]:
+def swung(response: CoupledResponse, cable: CoupledCable, slope: FloatArray) -> CoupledResponse:
+    """Return a response with the strain that an out-of-plane slope u3,s (n, g) adds to it."""
+    tangential, normal = response.tangential_strain, response.normal_strain
+    flat = tangential + 0.5 * (tangential**2 + normal**2)
+    flat_stretch = np.hypot(1.0 + tangential, normal)
+    stretch = np.hypot(flat_stretch, slope)
+    damping = response.tension - (cable.tension + cable.axial_stiffness * flat) * flat_stretch
+    quadratic = flat + 0.5 * slope**2
+    return replace(
+        response,
+        tension=(cable.tension + cable.axial_stiffness * quadratic) * stretch + damping,
+        printed_tension=cable.axial_stiffness * quadratic,
+        strain=cable.stretch * (stretch - 1.0),
+    )
+
+
+def continued(scene: Scene, measured: MeasuredMotion | None) -> Callable[[FloatArray], FloatArray]:
     """Return the motion at any time; data that end with the record go on as their own mirror image."""
 
     def motion(time: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""The linear model of a shallow cable as a Response: the exact transform at its gauges."""
+"""The linear model of a shallow cable at its gauges: the exact transform."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 
-from tethertest.records.response import ErrorBudget, Field, Response, Status
-from tethertest.records.scene import MeasuredMotion, Scene
+from tethertest.errors import DataError
+from tethertest.records.response import Field, Status
 from tethertest.solver.linear.coupled_solve import solve_coupled
+from tethertest.solver.problem import Problem, Refined
+from tethertest.solver.solution import Solution
 
 #: places of the field, both ends included
 _STATIONS = 41
@@ -16,55 +18,49 @@ _STATIONS = 41
 _FIELD_BINS = 480
 
 
-def solve_shallow(scene: Scene, measured: MeasuredMotion | None, tolerance: float) -> Response:
-    """Solve a shallow scene by the exact transform; taut cables only.
+def solve_shallow(problem: Problem) -> Refined:
+    """Solve a shallow or straight scene by the exact transform.
 
     Parameters
     ----------
-    scene : Scene
-        Geometry "shallow".
-    measured : MeasuredMotion, optional
-        Bottom displacement for ``motion = "measured"``.
-    tolerance : float
-        Relative error wanted.
+    problem : Problem
+        Its cells take no part: the transform has no mesh.
 
     Raises
     ------
     DataError
-        The motion or the geometry is not one that the transform takes.
+        The motion or the geometry is not one that the transform takes, or the scene asks for fields.
     """
-    found = solve_coupled(scene, measured=measured, tolerance=tolerance)
-    along = solve_coupled(
-        scene, measured=measured, stations=np.linspace(0.0, 1.0, _STATIONS), tolerance=tolerance
+    scene, measured = problem.scene, problem.measured
+    if scene.output.fields:
+        message = f"scene {scene.name!r}: the exact transform gives tension and strain alone"
+        raise DataError(message, "leave out [output] fields, or use --scheme two-grid")
+    gauges = np.asarray(scene.output.gauges, dtype=np.float64)
+    stations = np.linspace(0.0, 1.0, _STATIONS)
+    found = solve_coupled(
+        scene,
+        measured=measured,
+        stations=np.concatenate([gauges, stations]),
+        tolerance=problem.tolerance,
     )
-    tension = along.response.tension
-    rows = max(1, math.ceil(tension.shape[0] / _FIELD_BINS))
-    starts = np.arange(0, tension.shape[0], rows)
-    field = Field(
-        time=along.response.time[starts],
-        position=along.response.stations,
-        maximum=np.maximum.reduceat(tension, starts, axis=0),
-        minimum=np.minimum.reduceat(tension, starts, axis=0),
-    )
-    status = Status.OK if found.numerical_error <= tolerance else Status.TOLERANCE_NOT_MET
-    if float(np.min(field.minimum)) <= 0.0:
-        status = Status.SLACK_IN_LINEAR
-    warnings = ("the linear model leaves out air drag",) if scene.air is not None else ()
-    return Response(
-        scene=scene,
-        status=status,
-        fidelity="linear",
-        scheme="exact transform at the gauges",
-        cells=0,
-        time_step=found.time_step,
-        wall=0.0,
-        time=found.response.time,
-        gauges=found.response.stations,
-        tension=found.response.tension,
-        strain=found.response.strain,
+    response = found.response
+    along = response.tension[:, gauges.size :]
+    rows = max(1, math.ceil(along.shape[0] / _FIELD_BINS))
+    starts = np.arange(0, along.shape[0], rows)
+    solution = Solution(
+        time=response.time,
+        tension=np.ascontiguousarray(response.tension[:, : gauges.size]),
+        strain=np.ascontiguousarray(response.strain[:, : gauges.size]),
         platform_position=found.platform_position,
-        field=field,
-        error=ErrorBudget(numerical=found.numerical_error),
-        slack={float(gauge): () for gauge in found.response.stations},
-        warnings=warnings,
+        field=Field(
+            time=response.time[starts],
+            position=stations,
+            maximum=np.maximum.reduceat(along, starts, axis=0),
+            minimum=np.minimum.reduceat(along, starts, axis=0),
+        ),
+        time_step=found.time_step,
+        steps_done=response.time.size,
+        steps=response.time.size,
     )
+    status = Status.OK if found.numerical_error <= problem.tolerance else Status.TOLERANCE_NOT_MET
+    return Refined(solution, "linear", "exact transform at the gauges", 0, found.numerical_error, status)

@@ -16,8 +16,14 @@ import numpy as np
 
 from tethertest.records.arrays import FloatArray
 from tethertest.solver.linear.coupled import ComplexArray, CoupledCable, EndBody
-from tethertest.solver.linear.coupled_fronts import check_sudden, kink_spectrum, start_velocity, straight_strains
+from tethertest.solver.linear.coupled_fronts import (
+    check_sudden,
+    kink_spectrum,
+    start_velocity,
+    straight_strains,
+)
 from tethertest.solver.linear.coupled_transfer import strain_transfer
+from tethertest.solver.norms import relative_difference
 
 #: period of the transform over the duration; the input ends within the difference
 _PERIOD = 2.0
@@ -62,14 +68,14 @@ def refined_response(
     of those of the next, and are computed once. The error is the difference of the last two samplings,
     infinite where a sudden start makes waves along the cable that the finest sampling does not follow.
     """
-    line = _Line.over(rows, rate)
+    line = TransformLine.over(rows, rate)
     outputs = _Outputs.empty(stations, direction, top)
     coarse: CoupledResponse | None = None
     fronts: FloatArray | None = None
     velocity: float | None = None
     error = math.inf
     for factor in FACTORS:
-        drive = _Drive.sampled(motion, line, factor, velocity)
+        drive = TransformDrive.sampled(motion, line, factor, velocity)
         velocity = drive.start_velocity
         outputs = outputs.extended(cable, line.frequencies(factor))
         if fronts is None:
@@ -121,14 +127,14 @@ def exact_response(
     DataError
         The motion starts with a displacement, or with a velocity on a damped cable.
     """
-    line = _Line.over(rows, rate)
+    line = TransformLine.over(rows, rate)
     outputs = _Outputs.empty(stations, direction, top).extended(cable, line.frequencies(factor))
-    drive = _Drive.sampled(motion, line, factor)
+    drive = TransformDrive.sampled(motion, line, factor)
     return outputs.response(cable, line, drive, outputs.fronts(cable, line, drive))
 
 
 @dataclass(frozen=True, slots=True)
-class _Line:
+class TransformLine:
     """The line ``s = eta + i w`` and the samples in time that belong to it."""
 
     rows: int
@@ -136,22 +142,25 @@ class _Line:
     size: int  #: samples of one period at the output rate, even
 
     @classmethod
-    def over(cls, rows: int, rate: float) -> _Line:
+    def over(cls, rows: int, rate: float) -> TransformLine:
+        """Return the line for so many output rows [Hz]."""
         from scipy.fft import next_fast_len
 
         return cls(rows, rate, 2 * int(next_fast_len(math.ceil(0.5 * (_PERIOD * rows + _SPARE)), real=True)))
 
     @property
     def eta(self) -> float:
+        """Decay of the exponential window [1/s]."""
         return _WRAP * self.rate / self.size
 
     def frequencies(self, factor: int) -> ComplexArray:
+        """Return ``s`` of the discrete transform of so many input samples per output time."""
         index = np.arange(self.size * factor // 2 + 1)
         return np.asarray(self.eta + 2j * np.pi * index * self.rate / self.size)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Drive:
+class TransformDrive:
     """The bottom motion as the transform takes it."""
 
     motion: Callable[[FloatArray], FloatArray]
@@ -164,10 +173,10 @@ class _Drive:
     def sampled(
         cls,
         motion: Callable[[FloatArray], FloatArray],
-        line: _Line,
+        line: TransformLine,
         factor: int,
         velocity: float | None = None,
-    ) -> _Drive:
+    ) -> TransformDrive:
         """Sample the motion; ``velocity`` is that of the start, found from the samples if absent."""
         step = 1.0 / (line.rate * factor)
         time = np.asarray(np.arange(line.size * factor) * step, dtype=np.float64)
@@ -181,6 +190,7 @@ class _Drive:
         return cls(motion, velocity, factor, step, np.asarray(values * np.exp(-line.eta * time)))
 
     def spectrum(self, s: ComplexArray) -> ComplexArray:
+        """Return the transform of the weighted samples, a sudden start's kink corrected."""
         from scipy.fft import rfft
 
         plain = np.asarray(rfft(self.weighted))
@@ -215,7 +225,7 @@ class _Outputs:
             np.concatenate([self.end, end], axis=1),
         )
 
-    def fronts(self, cable: CoupledCable, line: _Line, drive: _Drive) -> FloatArray:
+    def fronts(self, cable: CoupledCable, line: TransformLine, drive: TransformDrive) -> FloatArray:
         """Return the strains (2, rows, g) of a sudden start on the straight cable; zero for a smooth one."""
         time = np.arange(line.rows) / line.rate
         if drive.start_velocity == 0.0:
@@ -224,7 +234,7 @@ class _Outputs:
         return straight_strains(cable, drive.motion, self.direction, self.stations, time, drive.step)
 
     def response(
-        self, cable: CoupledCable, line: _Line, drive: _Drive, fronts: FloatArray
+        self, cable: CoupledCable, line: TransformLine, drive: TransformDrive, fronts: FloatArray
     ) -> CoupledResponse:
         from scipy.fft import irfft
 
@@ -254,10 +264,3 @@ class _Outputs:
             strain=cable.stretch * (stretch - 1.0),
             top_displacement=series[2 * count : 2 * count + 2].T,
         )
-
-
-def relative_difference(tension: FloatArray, reference: FloatArray) -> float:
-    """Return the largest RMS difference of a station over the RMS of the largest dynamic part."""
-    dynamic = float(np.sqrt(np.max(np.mean((reference - reference[0]) ** 2, axis=0))))
-    difference = float(np.sqrt(np.max(np.mean((tension - reference) ** 2, axis=0))))
-    return difference / dynamic if dynamic > 0.0 else 0.0

@@ -1,77 +1,53 @@
-"""Natural frequencies of a vertical cable with a body on top: axial, lateral and the body's pendulum."""
+"""Natural frequencies of any scene about its rest, by name."""
 
 from __future__ import annotations
-
-import numpy as np
 
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Modes, NaturalFrequency
 from tethertest.records.scene import Scene
+from tethertest.solver.modal.chain_modes import bowed_frequencies, upright_frequencies
 from tethertest.solver.modal.coupled_modes import coupled_modes
-from tethertest.solver.statics.rest import RestState, rest_state
-
-#: cells of the chain; the third frequency is then within 0.1 % of the continuous cable's
-_CELLS = 200
+from tethertest.solver.terms import per_direction
 
 
 def modes(scene: Scene, count: int = 3) -> Modes:
-    """Return the lowest axial and lateral natural frequencies about rest.
+    """Return the lowest natural frequencies about rest in the steady wind.
 
     Parameters
     ----------
     scene : Scene
-        Geometry "vertical", "straight" or "shallow".
+        Any geometry.
     count : int
         How many of each kind.
 
     Returns
     -------
     Modes
-        The lowest lateral mode of a body that is free sideways is named "pendulum".
+        "axial" and "lateral" of a cable that stands upright ("vertical", "straight"); the lowest lateral mode
+        of a body that is free sideways is named "pendulum". "in-plane" and "out-of-plane" of any other: of
+        "shallow" from the paper's linear cable, of uniform tension and curvature, else from the chain.
+
+    Raises
+    ------
+    DataError
+        The scene has no rest; see `rest_chain`.
     """
-    if scene.geometry.kind == "shallow":
+    kind = scene.geometry.kind
+    if kind == "shallow":
         return coupled_modes(scene, count)
-    rest = rest_state(scene)
-    centres = (np.arange(_CELLS) + 0.5) / _CELLS
-    tension = rest.bottom_tension + centres * rest.weight
-    sideways, upright = _hover(scene)
-    axial = _chain(scene, rest, np.full(_CELLS, rest.axial_stiffness), upright)
-    lateral = _chain(scene, rest, tension / (1.0 + tension / rest.axial_stiffness), sideways)
-    pendulum = scene.top.kind == "platform" and sideways == 0.0
-    names = [f"axial {i + 1}" for i in range(count)]
-    names += ["pendulum"] if pendulum else []
-    names += [f"lateral {i + 1}" for i in range(count - 1 if pendulum else count)]
-    values = [*axial[:count], *lateral[:count]]
-    return Modes(
-        tuple(NaturalFrequency(name, float(value)) for name, value in zip(names, values, strict=True))
+    upright = upright_frequencies(scene, count) if kind in {"vertical", "straight"} else None
+    if upright is None:
+        inside, outside = bowed_frequencies(scene, count)
+        return Modes((*_named("in-plane", inside), *_named("out-of-plane", outside)))
+    axial, lateral = upright
+    if scene.top.kind == "fixed" or per_direction(scene.top.hover_stiffness)[0] > 0.0:
+        return Modes((*_named("axial", axial), *_named("lateral", lateral)))
+    pendulum = NaturalFrequency("pendulum", float(lateral[0]))
+    return Modes((*_named("axial", axial), pendulum, *_named("lateral", lateral[1:])))
+
+
+def _named(name: str, frequencies: FloatArray) -> tuple[NaturalFrequency, ...]:
+    return tuple(
+        NaturalFrequency(f"{name} {number}", float(frequency))
+        for number, frequency in enumerate(frequencies, start=1)
     )
-
-
-def _hover(scene: Scene) -> tuple[float, float]:
-    stiffness = scene.top.hover_stiffness
-    if isinstance(stiffness, tuple):
-        return float(stiffness[0]), float(stiffness[-1])
-    return stiffness, stiffness
-
-
-def _chain(scene: Scene, rest: RestState, force_per_strain: FloatArray, hover: float) -> FloatArray:
-    """Return the ascending frequencies [Hz] of a chain whose links resist with ``force_per_strain``."""
-    from scipy.linalg import eigh_tridiagonal
-
-    cell = rest.length / _CELLS
-    link = force_per_strain / cell
-    stiffness = link[:-1] + link[1:]
-    mass = np.full(_CELLS - 1, rest.mass_per_length * cell)
-    coupling = -link[1:-1]
-    if scene.top.kind == "platform":
-        stiffness = np.append(stiffness, link[-1] + hover)
-        mass = np.append(mass, (scene.top.mass or 0.0) + 0.5 * rest.mass_per_length * cell)
-        coupling = -link[1:]
-    squared = eigh_tridiagonal(
-        stiffness / mass,
-        coupling / np.sqrt(mass[:-1] * mass[1:]),
-        eigvals_only=True,
-        select="i",
-        select_range=(0, 5),
-    )
-    return np.asarray(np.sqrt(squared) / (2.0 * np.pi))

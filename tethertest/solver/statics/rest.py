@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from tethertest.errors import DataError
 from tethertest.records.scene import Scene
+from tethertest.solver.terms import axial_stiffness
 
 #: largest relative difference between two statements of one tension that still counts as agreement
 _TENSION_AGREEMENT = 1e-6
@@ -43,22 +44,14 @@ class RestState:
 
 
 def rest_state(scene: Scene) -> RestState:
-    """Return the rest of a vertical or straight scene.
+    """Return the rest of a vertical or straight scene, in still air.
 
     Raises
     ------
     DataError
         The tension is not given, given twice at odds, or leaves part of the cable slack.
     """
-    cable = scene.cable
-    stiffness = cable.axial_stiffness
-    if stiffness is None:
-        if cable.youngs_modulus is None or cable.diameter is None:
-            message = (
-                f"scene {scene.name!r}: neither axial_stiffness nor youngs_modulus with diameter is given"
-            )
-            raise DataError(message, "give [cable] axial_stiffness")
-        stiffness = cable.youngs_modulus * math.pi * cable.diameter**2 / 4.0
+    cable, stiffness = scene.cable, axial_stiffness(scene)
     gravity = scene.gravity if scene.geometry.kind == "vertical" else 0.0
     total_weight = cable.length * cable.mass_per_length * gravity
     bottom = _bottom_tension(scene, total_weight)
@@ -67,7 +60,7 @@ def rest_state(scene: Scene) -> RestState:
             f"scene {scene.name!r}: the top tension leaves {bottom:.4g} N at the bottom; the cable weighs "
             f"{total_weight:.4g} N"
         )
-        raise DataError(message, "raise the static tension above the weight of the cable")
+        raise DataError(message, "raise the lift or the static tension above the weight of the cable")
     if cable.length_state == "unstretched":
         return RestState(cable.length, cable.mass_per_length, stiffness, bottom, gravity)
     mean = bottom + 0.5 * total_weight
@@ -76,16 +69,37 @@ def rest_state(scene: Scene) -> RestState:
 
 
 def _bottom_tension(scene: Scene, weight: float) -> float:
-    stated = [scene.geometry.tension] if scene.geometry.tension is not None else []
+    """Return the bottom tension [N], from whichever key states it."""
+    stated = {"[geometry] tension": scene.geometry.tension}
     if scene.top.static_tension is not None:
-        stated.append(scene.top.static_tension - weight)
-    if not stated:
+        stated["[top] static_tension"] = scene.top.static_tension - weight
+    if scene.top.lift is not None and scene.geometry.kind != "shallow":
+        stated["[top] lift"] = _top_tension_under_lift(scene, scene.top.lift) - weight
+    given = {key: tension for key, tension in stated.items() if tension is not None}
+    if not given:
         message = f"scene {scene.name!r}: no tension at rest is given"
         raise DataError(message, "give [geometry] tension or, for a platform, [top] static_tension")
-    if len(stated) == 2 and abs(stated[0] - stated[1]) > _TENSION_AGREEMENT * abs(stated[0]):
-        message = (
-            f"scene {scene.name!r}: [geometry] tension says {stated[0]:.6g} N at the bottom, "
-            f"[top] static_tension says {stated[1]:.6g} N"
-        )
-        raise DataError(message, "give one of the two")
-    return stated[0]
+    (first, tension), *others = given.items()
+    for key, other in others:
+        if abs(tension - other) > _TENSION_AGREEMENT * abs(tension):
+            message = (
+                f"scene {scene.name!r}: {first} says {tension:.6g} N at the bottom, {key} says {other:.6g} N"
+            )
+            raise DataError(message, "give one of the two")
+    return tension
+
+
+def _top_tension_under_lift(scene: Scene, lift: float | tuple[float, ...]) -> float:
+    """Return what a lift leaves for the cable [N].
+
+    Raises
+    ------
+    DataError
+        The lift is not vertical: the platform would not rest above the bottom end.
+    """
+    if isinstance(lift, tuple) and any(lift[:-1]):
+        message = f"scene {scene.name!r}: a lift of {lift} N does not hold the platform above the bottom end"
+        raise DataError(message, 'give a vertical [top] lift, or set [geometry] kind = "hovering"')
+    upwards = lift[-1] if isinstance(lift, tuple) else lift
+    gravity = scene.gravity if scene.geometry.kind == "vertical" else 0.0
+    return upwards - (scene.top.mass or 0.0) * gravity

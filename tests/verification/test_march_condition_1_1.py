@@ -1,4 +1,4 @@
-"""The planar march on the paper's condition 1.1 against extrapolated extremes and orders of accuracy.
+"""The march in the plane on the paper's condition 1.1 against extrapolated extremes and orders of accuracy.
 
 Extremes are those of fourth-order extrapolated and fifth-order finite-volume solutions, which agree to 1e-5.
 """
@@ -15,8 +15,8 @@ import pytest
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
-from tethertest.solver.nonlinear.axial import AxialSolution
-from tethertest.solver.nonlinear.planar import run_planar
+from tethertest.solver.nonlinear.chain_march import run_chain
+from tethertest.solver.solution import Solution
 
 LENGTH, MASS, STIFFNESS = 149.164, 0.033520, 120.17
 COURANT = {False: 1.0, True: 0.9}
@@ -37,12 +37,12 @@ def scene_of(frequency: float, courant: float) -> Scene:
 
 
 @cache
-def condition(frequency: float, cells: int, viscous: bool) -> AxialSolution:
+def condition(frequency: float, cells: int, viscous: bool) -> Solution:
     scene = scene_of(frequency, COURANT[viscous])
-    return run_planar(scene, cells, viscous=viscous, courant=COURANT[viscous])
+    return run_chain(scene, cells, viscous=viscous, courant=COURANT[viscous])
 
 
-def ends(solution: AxialSolution) -> list[float]:
+def ends(solution: Solution) -> list[float]:
     low, high = solution.field.minimum.min(axis=0), solution.field.maximum.max(axis=0)
     return [float(value) for value in (low[0], high[0], low[-1], high[-1])]
 
@@ -64,7 +64,7 @@ def test_largest_top_tension_at_100_cells() -> None:
     assert ends(condition(0.18, 100, False))[3] == pytest.approx(123.685, abs=0.02)
 
 
-def extrapolated(coarse: AxialSolution, fine: AxialSolution) -> FloatArray:
+def extrapolated(coarse: Solution, fine: Solution) -> FloatArray:
     return np.asarray((4.0 * fine.tension - coarse.tension) / 3.0)
 
 
@@ -103,7 +103,7 @@ def test_a_million_steps_near_resonance_stay_bounded() -> None:
     """The start overshoots to 204 N and settles at 138 N; without viscosity the run pumps itself to 1e5 N."""
     scene = scene_of(0.2, 0.9)
     scene = replace(scene, output=replace(scene.output, duration=44800.0, rate=0.1))
-    solution = run_planar(scene, 50, viscous=True, courant=0.9)
+    solution = run_chain(scene, 50, courant=0.9)
     assert solution.steps_done == solution.steps > 990_000
     highest = solution.field.maximum.max(axis=1)
     assert np.max(highest) < 210.0

@@ -1,0 +1,222 @@
+"""The nonlinear model refined until its error is within the tolerance, and that error.
+
+A taut cable is marched without viscosity; pairs of meshes then extrapolate to fourth order. As soon as any
+cell goes slack such a march is wrong however fine its mesh, and the viscous scheme takes over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from tethertest.records.arrays import FloatArray
+from tethertest.records.response import Status
+from tethertest.solver.nonlinear.chain_march import chain_case, run_chain
+from tethertest.solver.norms import finished, goes_slack, relative_difference
+from tethertest.solver.numbers import SceneNumbers
+from tethertest.solver.problem import Problem, Refined
+from tethertest.solver.resample import resampled
+from tethertest.solver.solution import Solution
+
+TAUT, VISCOUS = "leapfrog on the material mesh", "leapfrog on the material mesh, limited viscosity"
+EXTRAPOLATED = "leapfrog on the material mesh, extrapolated from two meshes"
+#: coarsest mesh, and the cells that half a wave of the drive needs on it
+FIRST_MESH, CELLS_PER_HALF_WAVE = 10, 4.0
+#: steps per output row below which rows are interpolated by a cubic instead of a straight line
+_FEW_STEPS = 8.0
+#: ratio of axial to transverse speed near which a march at Courant number 1 resonates with its own mesh
+_RESONANT, _OFF_RESONANCE = (1.6, 2.5), 0.9
+#: ratio of successive differences from which the scheme counts as being at its order
+_AT_ORDER = (3.8, 4.2)
+#: what a difference of extrapolated answers overestimates the finer one's error by: at order, and before it
+_FOURTH_ORDER, _BEFORE_ORDER = 4.0, 1.0
+#: what rows between time levels and rounding leave of any extrapolated answer
+_FLOOR = 5e-8
+#: differences that shrink by less than this twice running do not settle
+_SETTLES = 0.75
+#: cells x steps above which no further mesh is tried where the tolerance is out of reach
+_ENOUGH = 6e7
+#: margin on the difference of two meshes when the cable goes slack: errors there do not fall smoothly
+_SLACK_MARGIN = 2.0
+
+
+def refine_nonlinear(problem: Problem, numbers: SceneNumbers) -> Refined:
+    """Solve a scene with the nonlinear model.
+
+    Parameters
+    ----------
+    problem : Problem
+    numbers : SceneNumbers
+        Of the scene; they set the coarsest mesh.
+
+    Raises
+    ------
+    DataError
+        The scene has no rest.
+    """
+    if problem.cells is not None:
+        solution = _march_viscous(problem, problem.cells)
+        return Refined(solution, "nonlinear", VISCOUS, problem.cells, np.nan, _ended(solution, Status.OK))
+    along = len(chain_case(problem.scene, 2, measured=problem.measured, wind=problem.wind).axes) == 1
+    ratio = numbers.drive_over_axial if along else numbers.drive_over_first
+    needed = CELLS_PER_HALF_WAVE * ratio
+    first = FIRST_MESH * 2 ** max(0, int(np.ceil(np.log2(max(1.0, needed / FIRST_MESH)))))
+    meshes = [first]
+    while 2 * meshes[-1] <= max(problem.finest, 2 * first):
+        meshes.append(2 * meshes[-1])
+    taut = _refine_taut(problem, meshes)
+    return _refine_viscous(problem, meshes) if taut is None else taut
+
+
+def _refine_taut(problem: Problem, meshes: list[int]) -> Refined | None:
+    """Refine without viscosity; None as soon as the cable goes slack."""
+    sudden, courant = problem.sudden, _common_courant(problem, meshes[0])
+    runs: list[Solution] = []
+    extrapolated: list[Solution] = []
+    differences: list[float] = []
+    error, status = np.inf, Status.TOLERANCE_NOT_MET
+    for cells in _affordable(problem, meshes, viscous=False):
+        run = _march_taut(problem, cells, courant)
+        if goes_slack(run) or not finished(run):
+            return None
+        runs.append(run)
+        if len(runs) > 1:
+            differences.append(relative_difference(runs[-2].tension, run.tension))
+            extrapolated.append(_extrapolated(runs[-2], run))
+        if len(runs) > 2:
+            if sudden:
+                error = _error_of_falling(differences)
+            else:
+                apart = relative_difference(extrapolated[-2].tension, extrapolated[-1].tension)
+                ratio = differences[-2] / max(differences[-1], 1e-300)
+                at_order = _AT_ORDER[0] < ratio < _AT_ORDER[1]
+                error = apart / (_FOURTH_ORDER if at_order else _BEFORE_ORDER) + _FLOOR
+            if not sudden and _stalls(differences):
+                return None
+            if error <= problem.tolerance:
+                status = Status.OK
+                break
+    used = meshes[len(runs) - 1]
+    if len(runs) < 3:
+        status = Status.STEP_LIMIT
+        error = differences[-1] if differences else np.inf
+    if sudden or not extrapolated:
+        return Refined(runs[-1], "nonlinear", TAUT, used, error, status)
+    if problem.native_times:
+        run = run_chain(problem.scene, used, viscous=False, measured=problem.measured, wind=problem.wind,
+                        native_times=True)  # fmt: skip
+        fine = relative_difference(runs[-1].tension, extrapolated[-1].tension) + error
+        met = Status.OK if fine <= problem.tolerance else status
+        return Refined(run, "nonlinear", TAUT, used, fine, met)
+    return Refined(extrapolated[-1], "nonlinear", EXTRAPOLATED, used, error, status)
+
+
+def _refine_viscous(problem: Problem, meshes: list[int]) -> Refined:
+    """Refine with viscosity."""
+    differences: list[float] = []
+    before: Solution | None = None
+    solution: Solution | None = None
+    error, status, used = np.inf, Status.TOLERANCE_NOT_MET, meshes[0]
+    for cells in _affordable(problem, meshes, viscous=True):
+        solution = _march_viscous(problem, cells)
+        used = cells
+        if not finished(solution):
+            break
+        if before is not None:
+            differences.append(relative_difference(before.tension, solution.tension))
+            error = _SLACK_MARGIN * max(differences[-1], 0.5 * differences[-2] if differences[1:] else 0.0)
+            if differences[1:]:
+                error = max(error, _error_of_falling(differences))
+            if error <= problem.tolerance and len(differences) > 1:
+                status = Status.OK
+                break
+            next_work = 4 * cells * solution.steps
+            left = len(meshes) - meshes.index(cells) - 1
+            if next_work > _ENOUGH and _hopeless(problem, differences, error, left):
+                break
+        before = solution
+    if solution is None:
+        solution, status = _march_viscous(problem, meshes[0]), Status.STEP_LIMIT
+    if not differences and status is Status.TOLERANCE_NOT_MET:
+        status = Status.STEP_LIMIT
+    elif status is Status.TOLERANCE_NOT_MET and goes_slack(solution):
+        status = Status.NOT_SETTLED
+    if problem.native_times:
+        solution = run_chain(problem.scene, used, measured=problem.measured, wind=problem.wind,
+                             native_times=True)  # fmt: skip
+    return Refined(solution, "nonlinear", VISCOUS, used, error, _ended(solution, status))
+
+
+def _affordable(problem: Problem, meshes: list[int], *, viscous: bool) -> Iterator[int]:
+    for cells in meshes:
+        case = chain_case(problem.scene, cells, viscous=viscous, measured=problem.measured, wind=problem.wind)
+        if cells * case.steps > problem.node_steps:
+            return
+        yield cells
+
+
+def _march_viscous(problem: Problem, cells: int) -> Solution:
+    return run_chain(problem.scene, cells, measured=problem.measured, wind=problem.wind)
+
+
+def _march_taut(problem: Problem, cells: int, largest: float) -> Solution:
+    """March without viscosity at a Courant number of at most ``largest``; rows at the output times."""
+    scene, measured, wind = problem.scene, problem.measured, problem.wind
+    case = chain_case(scene, cells, viscous=False, measured=measured, wind=wind)
+    courant = min(case.courant, largest)
+    step = case.time_step * courant / case.courant
+    few = step * scene.output.rate * _FEW_STEPS > 1.0 and not problem.sudden
+    run = run_chain(
+        scene, cells, viscous=False, courant=courant, measured=measured, wind=wind, native_times=few
+    )
+    return resampled(run, scene.output) if few else run
+
+
+def _common_courant(problem: Problem, cells: int) -> float:
+    """Return a Courant number for this mesh and all finer ones: the error's law in the mesh is then clean."""
+    case = chain_case(problem.scene, cells, viscous=False, measured=problem.measured, wind=problem.wind)
+    tension, stiffness = case.rest.tension, case.rest.stiffness
+    ratio = np.sqrt(stiffness * (1.0 + tension / stiffness) / tension)
+    resonant = len(case.axes) > 1 and np.any((ratio > _RESONANT[0]) & (ratio < _RESONANT[1]))
+    return case.courant * (_OFF_RESONANCE if resonant else 1.0)
+
+
+def _extrapolated(coarse: Solution, fine: Solution) -> Solution:
+    """Return what a second-order scheme tends to, from a mesh and one of half its cells."""
+
+    def limit(low: FloatArray, high: FloatArray) -> FloatArray:
+        return np.asarray(high + (high - low) / 3.0)
+
+    return replace(
+        fine,
+        tension=limit(coarse.tension, fine.tension),
+        strain=limit(coarse.strain, fine.strain),
+        platform_position=limit(coarse.platform_position, fine.platform_position),
+        fields={name: limit(coarse.fields[name], values) for name, values in fine.fields.items()},
+    )
+
+
+def _error_of_falling(differences: list[float]) -> float:
+    """Return the finest mesh's error if differences keep falling as the last two did."""
+    ratio = float(np.clip(differences[-2] / max(differences[-1], 1e-300), 1.3, 4.0))
+    return differences[-1] / (ratio - 1.0)
+
+
+def _stalls(differences: list[float]) -> bool:
+    if len(differences) < 3:
+        return False
+    return differences[-1] > _SETTLES * differences[-2] and differences[-2] > _SETTLES * differences[-3]
+
+
+def _hopeless(problem: Problem, differences: list[float], error: float, left: int) -> bool:
+    """Return whether the error, falling as it did, stays above the tolerance on all meshes that are left."""
+    if len(differences) < 3 or error <= problem.tolerance:
+        return False
+    ratio = np.sqrt(differences[-1] / max(differences[-3], 1e-300))
+    return bool(error * min(ratio, 1.0) ** left > problem.tolerance)
+
+
+def _ended(solution: Solution, status: Status) -> Status:
+    return status if finished(solution) else Status.NOT_FINITE

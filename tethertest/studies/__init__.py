@@ -1,0 +1,1 @@
+"""Studies of the tool itself: references of another kind, speed against error, stability batteries."""

@@ -9,6 +9,7 @@ import sys
 
 import typer
 
+from tethertest.cli.bench import bench
 from tethertest.cli.inspect import inspect
 from tethertest.cli.report import report
 from tethertest.cli.scale import scale
@@ -28,7 +29,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.callback()(show_version)
-for command in (report, inspect, solve, scale, schema):
+for command in (report, inspect, solve, scale, bench, schema):
     app.command()(command)
 
 

@@ -22,7 +22,7 @@ _USUAL_CELLS, _LADDER = 40, 1.4
 #: expected time of the nonlinear march from which another model is looked for [s]
 _WORTH_A_CHOICE = 0.06
 #: drive over first natural frequency above which a quasi-static cable is out of the question
-_TOO_FAST = 1.0
+_TOO_FAST = 0.15
 #: share of the tolerance that the model-form error of a simpler model may take
 _SHARE = 0.7
 #: amplitude of the bottom over length above which a shallow cable's linear model is not tried

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from dataclasses import field as a_field
 
+import numpy as np
+
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Field
+
+#: rows of the tension field kept over a record, about
+FIELD_BINS = 480
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,3 +29,23 @@ class Solution:
     steps: int
     #: "position", "velocity" (n, g, 3) along x, y, z and "curvature" (n, g), where the scene asks for them
     fields: dict[str, FloatArray] = a_field(default_factory=dict)
+
+
+def field_of_rows(time: FloatArray, position: FloatArray, tension: FloatArray) -> Field:
+    """Return the extremes of a tension known at every row; neighbouring bins share their edge.
+
+    Parameters
+    ----------
+    time : (n,) float64
+        [s].
+    position : (m,) float64
+        Fractions of the length from the bottom.
+    tension : (n, m) float64
+        [N].
+    """
+    starts = np.arange(0, time.size, max(1, math.ceil(time.size / FIELD_BINS)))
+    maximum = np.maximum.reduceat(tension, starts, axis=0)
+    minimum = np.minimum.reduceat(tension, starts, axis=0)
+    maximum[1:] = np.maximum(maximum[1:], tension[starts[1:] - 1])
+    minimum[1:] = np.minimum(minimum[1:], tension[starts[1:] - 1])
+    return Field(time[starts], position, maximum, minimum)

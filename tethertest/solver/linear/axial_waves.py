@@ -25,12 +25,10 @@ from tethertest.records.scene import MeasuredMotion, Scene
 from tethertest.solver.linear.axial_ends import INSTANT, EndLoop, UpperEnd, WaveLine, upper_end
 from tethertest.solver.linear.coupled import coupled_cable
 from tethertest.solver.motion import displacement, velocity
-from tethertest.solver.solution import Solution
+from tethertest.solver.solution import FIELD_BINS, Solution
 from tethertest.solver.statics.rest import RestState, rest_state
 from tethertest.solver.terms import bottom_direction, per_direction
 
-#: rows of the tension field kept over the record
-_FIELD_BINS = 480
 #: a direction's component below this is none
 _NO_PART = 1e-12
 _UP = np.array([0.0, 0.0, 1.0])
@@ -253,7 +251,7 @@ def _field(waves: _Waves, rest: RestState, steps: int) -> Field:
     """Return the extremes of the tension along the cable, those on both sides of every front among them."""
     cells = waves.line.cells
     position = np.concatenate([[0.0], (np.arange(cells) + 0.5) / cells, [1.0]])
-    bin_steps = max(1, math.ceil((steps + 1) / _FIELD_BINS))
+    bin_steps = max(1, math.ceil((steps + 1) / FIELD_BINS))
     starts = np.arange(0, steps + 1, bin_steps)
     highest, lowest = np.empty((2, starts.size, position.size))
     after = waves.tension_at_stations(steps, before=False)

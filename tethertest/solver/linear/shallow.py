@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from tethertest.errors import DataError
-from tethertest.records.response import Field, Status
+from tethertest.records.response import Status
 from tethertest.solver.linear.coupled_solve import solve_coupled
 from tethertest.solver.problem import Problem, Refined
-from tethertest.solver.solution import Solution
+from tethertest.solver.solution import Solution, field_of_rows
 
 #: places of the field, both ends included
 _STATIONS = 41
-#: rows of the field kept over the record
-_FIELD_BINS = 480
 
 
 def solve_shallow(problem: Problem) -> Refined:
@@ -45,19 +41,12 @@ def solve_shallow(problem: Problem) -> Refined:
     )
     response = found.response
     along = response.tension[:, gauges.size :]
-    rows = max(1, math.ceil(along.shape[0] / _FIELD_BINS))
-    starts = np.arange(0, along.shape[0], rows)
     solution = Solution(
         time=response.time,
         tension=np.ascontiguousarray(response.tension[:, : gauges.size]),
         strain=np.ascontiguousarray(response.strain[:, : gauges.size]),
         platform_position=found.platform_position,
-        field=Field(
-            time=response.time[starts],
-            position=stations,
-            maximum=np.maximum.reduceat(along, starts, axis=0),
-            minimum=np.minimum.reduceat(along, starts, axis=0),
-        ),
+        field=field_of_rows(response.time, stations, along),
         time_step=found.time_step,
         steps_done=response.time.size,
         steps=response.time.size,

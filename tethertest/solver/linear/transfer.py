@@ -7,7 +7,6 @@ referred to the end that they leave and only decay from there, so nothing overfl
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,12 +14,11 @@ import numpy.typing as npt
 
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
-from tethertest.records.response import Field
 from tethertest.records.scene import MeasuredMotion, Scene
 from tethertest.solver.linear.axial_waves import axial_fields, axial_share, output_times
 from tethertest.solver.linear.coupled_solve import continued
 from tethertest.solver.linear.transform import TransformDrive, TransformLine
-from tethertest.solver.solution import Solution
+from tethertest.solver.solution import Solution, field_of_rows
 from tethertest.solver.statics.rest import rest_state
 from tethertest.solver.terms import per_direction
 
@@ -28,8 +26,6 @@ ComplexArray = npt.NDArray[np.complex128]
 
 #: places of the field, both ends included
 _STATIONS = 41
-#: rows of the field kept over the record
-_FIELD_BINS = 480
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,18 +134,12 @@ def run_axial_transform(scene: Scene, *, measured: MeasuredMotion | None = None,
     stations = np.linspace(0.0, 1.0, _STATIONS)
     here, along = axial_transfer(scene, s, gauges), axial_transfer(scene, s, stations)
     tension = rest.bottom_tension + stations * rest.weight + inverted(along.tension)
-    starts = np.arange(0, time.size, max(1, math.ceil(time.size / _FIELD_BINS)))
     return Solution(
         time=time,
         tension=rest.bottom_tension + gauges * rest.weight + inverted(here.tension),
         strain=inverted(here.strain),
         platform_position=inverted(along.displacement[:, -1:])[:, 0],
-        field=Field(
-            time[starts],
-            stations,
-            np.maximum.reduceat(tension, starts, axis=0),
-            np.minimum.reduceat(tension, starts, axis=0),
-        ),
+        field=field_of_rows(time, stations, tension),
         time_step=drive.step,
         steps_done=time.size,
         steps=time.size,

@@ -28,15 +28,13 @@ from tethertest.solver.linear.coupled import (
 )
 from tethertest.solver.linear.coupled_fronts import start_velocity
 from tethertest.solver.motion import displacement, velocity
-from tethertest.solver.solution import Solution
+from tethertest.solver.solution import FIELD_BINS, Solution
 from tethertest.solver.terms import leaves_plane
 
 #: fewest cells of the axial grid
 LEAST_CELLS = 4
 #: the axial grid may have this many times the cells asked for where the two speeds then fit better
 _SPARE = 1.5
-#: time levels of the tension field kept over the record
-_FIELD_BINS = 480
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +207,7 @@ def empty_record(scene: Scene, grids: tuple[int, int], step: float, levels: int,
     else:
         rows = math.floor(output.duration * output.rate + 1e-9) + 1
         level = np.minimum(np.arange(rows) / (output.rate * step), levels - 1.0)
-    bin_levels = math.ceil(levels / _FIELD_BINS)
+    bin_levels = math.ceil(levels / FIELD_BINS)
     shape = (math.ceil(levels / bin_levels), axial + 1)
     return Record(
         level=level,

@@ -15,7 +15,7 @@ from tethertest.records.response import Field
 from tethertest.records.scene import MeasuredMotion, Output, Scene, WindSeries
 from tethertest.solver.motion import displacement, velocity
 from tethertest.solver.nonlinear.limits import EXPLICIT_DAMPING, VISCOSITY, courant_limit
-from tethertest.solver.solution import Solution
+from tethertest.solver.solution import FIELD_BINS, Solution
 from tethertest.solver.statics.equilibrium import RestChain, rest_chain
 from tethertest.solver.terms import (
     body_axes,
@@ -26,8 +26,6 @@ from tethertest.solver.terms import (
     steady_wind,
 )
 
-#: rows of the tension field kept over the record
-_FIELD_BINS = 480
 #: how many times faster than bottom and wind together the cable is taken to meet the air, for the step limit
 _AIR_SPEED_SHARE = 2.0
 #: components of a vector in space that a march of so many dimensions follows
@@ -197,7 +195,7 @@ def empty_record(
     stations = np.concatenate([[0.0], (np.arange(cells) + 0.5) / cells, [1.0]])
     index = np.clip(np.searchsorted(stations, gauges, "right") - 1, 0, cells)
     node = np.clip(np.floor(gauges * cells).astype(np.int64), 0, cells - 1)
-    bin_steps = max(1, math.ceil(steps / _FIELD_BINS))
+    bin_steps = max(1, math.ceil(steps / FIELD_BINS))
     bins = math.ceil(steps / bin_steps)
     return Record(
         interval=0.0 if native_times else 1.0 / output.rate,

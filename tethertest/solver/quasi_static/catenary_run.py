@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from tethertest.records.arrays import FloatArray
@@ -11,12 +9,10 @@ from tethertest.records.response import Field
 from tethertest.records.scene import MeasuredMotion, Scene
 from tethertest.solver.quasi_static.moved_ends import MovedEnds, moved_ends
 from tethertest.solver.quasi_static.rest_case import RestCase, rest_case
-from tethertest.solver.solution import Solution
+from tethertest.solver.solution import Solution, field_of_rows
 
 #: stations of the tension field, as fractions of the length
 _STATIONS = np.linspace(0.0, 1.0, 41)
-#: rows of the tension field kept over the record
-_FIELD_BINS = 480
 
 
 def run_catenary(
@@ -72,15 +68,7 @@ def run_catenary(
 
 def _field(case: RestCase, ends: MovedEnds) -> Field:
     """Return the extremes of the tension over bins that share their edges."""
-    rows = ends.time.size
-    per_bin = max(1, math.ceil(rows / _FIELD_BINS))
-    tension = case.cable.tension(ends.force, _STATIONS)
-    starts = np.arange(0, rows, per_bin)
-    maximum = np.maximum.reduceat(tension, starts)
-    minimum = np.minimum.reduceat(tension, starts)
-    maximum[1:] = np.maximum(maximum[1:], tension[starts[1:] - 1])
-    minimum[1:] = np.minimum(minimum[1:], tension[starts[1:] - 1])
-    return Field(time=ends.time[starts], position=_STATIONS, maximum=maximum, minimum=minimum)
+    return field_of_rows(ends.time, _STATIONS, case.cable.tension(ends.force, _STATIONS))
 
 
 def _fields(

@@ -1,0 +1,166 @@
+"""The scenes that studies run: the shipped files, and the ones whose figures are known from elsewhere."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import brentq
+
+from tethertest.errors import DataError
+from tethertest.readers import load_scene
+from tethertest.readers.scene_series import read_motion, read_wind
+from tethertest.records.cable import Air, Cable
+from tethertest.records.scene import Bottom, Geometry, MeasuredMotion, Output, Scene, Top, WindSeries
+from tethertest.solver.statics.catenary_shape import ElasticCatenary
+
+#: scene files of the bench
+SHIPPED = (
+    "taut-vertical-jump",
+    "straight-free-shape",
+    "paper-1.1-f018-ramp",
+    "paper-1.1-f025",
+    "inclined-ends-wind",
+    "rig-3m-hover",
+    "snap-150m",
+)
+#: drag of a cable in air, normal and tangential
+_AIR = Air(1.225, 1.2, 0.01)
+_GRAVITY = 9.81
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Case:
+    """A scene with the series that it reads."""
+
+    name: str
+    scene: Scene
+    measured: MeasuredMotion | None = None
+    wind: WindSeries | None = None
+
+
+def cases(paths: Sequence[Path]) -> tuple[Case, ...]:
+    """Return the scenes of files; the shipped ones if there are none.
+
+    Raises
+    ------
+    TethertestError
+        A file is no scene, or no ``rigs/scenes`` is found from the current directory upwards.
+    """
+    found = []
+    for path in paths or [shipped_folder() / f"{name}.toml" for name in SHIPPED]:
+        scene = load_scene(path)
+        found.append(Case(path.stem, scene, read_motion(scene), read_wind(scene)))
+    return tuple(found)
+
+
+def shipped_folder() -> Path:
+    """Return ``rigs/scenes`` in the current directory or the nearest one above it.
+
+    Raises
+    ------
+    DataError
+        There is none.
+    """
+    here = Path.cwd()
+    for folder in (here, *here.parents):
+        scenes = folder / "rigs" / "scenes"
+        if scenes.is_dir():
+            return scenes
+    message = f"no folder rigs/scenes in {here} or above it"
+    raise DataError(message, "name the scene files, or change into the project's folder")
+
+
+def condition(
+    frequency: float = 0.18, *, amplitude: float = 2.0, duration: float = 67.5, rate: float = 30.0
+) -> Scene:
+    """Return the article's condition 1.1 with a ramped start, gauges at both ends."""
+    return Scene(
+        name=f"condition 1.1, {frequency:g} Hz, {amplitude:g} m",
+        cable=Cable(250.0, "equilibrium", 0.02, youngs_modulus=1.7e7, diameter=0.003),
+        geometry=Geometry("shallow", tension=80.0),
+        bottom=Bottom("harmonic", amplitude=amplitude, frequency=frequency, start="ramp", ramp=10.0),
+        top=Top("fixed"),
+        output=Output(duration, rate, (0.0, 1.0)),
+        gravity=_GRAVITY,
+    )
+
+
+def condition_upright(frequency: float) -> Scene:
+    """Return the cable of condition 1.1 hung vertically with 80 N at the bottom."""
+    flat = condition(frequency)
+    cable = Cable(149.164, "unstretched", 0.03352, axial_stiffness=120.17)
+    return replace(
+        flat, name="condition 1.1 upright", cable=cable, geometry=Geometry("vertical", tension=80.0)
+    )
+
+
+def prototype(degrees: float, tension: float = 50.0, amplitude: float = 2.0) -> Scene:
+    """Return the 150 m tether in air, driven along itself at 0.2 Hz.
+
+    Parameters
+    ----------
+    degrees : float
+        Its chord above the level.
+    tension : float
+        At mid-length, at rest [N].
+    amplitude : float
+        [m].
+    """
+    weight, angle = 0.0484 * _GRAVITY, math.radians(degrees)
+
+    def chord(pull: float) -> np.ndarray:
+        force = tension * np.array([math.cos(pull), math.sin(pull)]) - [0.0, 0.5 * weight * 150.0]
+        load = np.array([0.0, -weight])
+        return np.asarray(ElasticCatenary(150.0, 10020.0, load, force).position(np.array([150.0]))[0])
+
+    def too_steep(pull: float) -> float:
+        end = chord(pull)
+        return math.atan2(end[1], end[0]) - angle
+
+    end = chord(float(brentq(too_steep, -1.5, 1.55, xtol=1e-14)))
+    return Scene(
+        name=f"150 m at {degrees:g} degrees, {tension:g} N at mid-length",
+        cable=Cable(150.0, "unstretched", 0.0484, axial_stiffness=10020.0, diameter=0.006),
+        geometry=Geometry("ends", top=(float(end[0]), float(end[1]))),
+        bottom=Bottom("harmonic", amplitude=amplitude, frequency=0.2, start="ramp", ramp=10.0),
+        top=Top("fixed"),
+        output=Output(40.0, 100.0, (0.0, 1.0)),
+        air=_AIR,
+        gravity=_GRAVITY,
+    )
+
+
+def snap() -> Scene:
+    """Return the 150 m vertical tether that goes slack, undamped and without air; gauge at the top."""
+    return replace(
+        prototype(45.0),
+        name="vertical snap",
+        geometry=Geometry("vertical", tension=50.0),
+        air=None,
+        output=Output(40.0, 1000.0, (1.0,)),
+        gravity=9.80665,
+    )
+
+
+def rig(mass: float = 0.4, damping_time: float | None = None) -> Scene:
+    """Return the 3 m rig with a platform of some mass under 5 N, heaved by 0.1 m at 0.3 Hz."""
+    return Scene(
+        name=f"3 m rig, {mass:g} kg",
+        cable=Cable(
+            3.0,
+            "unstretched",
+            0.0484,
+            axial_stiffness=10020.0,
+            axial_damping_time=damping_time,
+            diameter=0.006,
+        ),
+        geometry=Geometry("vertical"),
+        bottom=Bottom("harmonic", amplitude=0.1, frequency=0.3, start="ramp", ramp=5.0),
+        top=Top("platform", mass=mass, static_tension=5.0),
+        output=Output(30.0, 200.0, (0.0, 1.0)),
+        gravity=_GRAVITY,
+    )

@@ -9,7 +9,7 @@ from tethertest.records.response import Status
 from tethertest.solver.linear.refine import moves_along, refine_linear
 from tethertest.solver.nonlinear.chain_march import chain_case, run_chain
 from tethertest.solver.nonlinear.refine import FIRST_MESH, refine_nonlinear
-from tethertest.solver.norms import goes_slack, relative_difference
+from tethertest.solver.norms import goes_slack
 from tethertest.solver.numbers import SceneNumbers
 from tethertest.solver.problem import Problem, Refined
 from tethertest.solver.quasi_static.catenary_run import run_catenary
@@ -63,7 +63,7 @@ def judged_linear(problem: Problem, numbers: SceneNumbers, refined: Refined) -> 
     rows = refined.solution.tension
     if rows.shape != nonlinear.solution.tension.shape:  # at the scheme's own times
         return Chosen(refined, None)
-    return Chosen(refined, relative_difference(rows, nonlinear.solution.tension))
+    return Chosen(refined, problem.apart(rows, nonlinear.solution.tension))
 
 
 def judged_catenary(problem: Problem) -> Chosen:
@@ -154,4 +154,4 @@ def _drag_along(problem: Problem) -> float:
     courant = chain_case(scene, FIRST_MESH, measured=measured).courant
     dragged = run_chain(scene, FIRST_MESH, measured=measured, courant=courant)
     still = run_chain(replace(scene, air=None), FIRST_MESH, measured=measured, courant=courant)
-    return _DRAG_MARGIN * relative_difference(still.tension, dragged.tension)
+    return _DRAG_MARGIN * problem.apart(still.tension, dragged.tension)

@@ -11,16 +11,22 @@ from tethertest.solver.solution import Solution
 _STILL = 1e-9
 
 
-def relative_difference(tension: FloatArray, reference: FloatArray) -> float:
+def relative_difference(
+    tension: FloatArray, reference: FloatArray, rest: FloatArray | float | None = None
+) -> float:
     """Return the largest RMS difference of a gauge over the RMS of the largest dynamic part.
 
     Parameters
     ----------
     tension, reference : (n, g) float64
         [N].
+    rest : (g,) float64 or float, optional
+        Tension at rest [N], from which the dynamic part counts; the reference's first row if absent, which a
+        sudden start has left already.
     """
-    still = _STILL * float(np.max(np.abs(reference[0])))
-    dynamic = float(np.sqrt(np.max(np.mean((reference - reference[0]) ** 2, axis=0))))
+    start = reference[0] if rest is None else rest
+    still = _STILL * float(np.max(np.abs(start)))
+    dynamic = float(np.sqrt(np.max(np.mean((reference - start) ** 2, axis=0))))
     difference = float(np.sqrt(np.max(np.mean((tension - reference) ** 2, axis=0))))
     if dynamic <= still:
         return 0.0 if difference <= still else float("inf")

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Status
 from tethertest.records.scene import MeasuredMotion, Scene, WindSeries
 from tethertest.solver.motion import velocity
+from tethertest.solver.norms import relative_difference
 from tethertest.solver.solution import Solution
 
 #: share of the largest velocity that may be there at the first instant of a motion that starts smoothly
@@ -30,6 +32,11 @@ class Problem:
     finest: int = 640  #: finest mesh that may be tried
     node_steps: float = 4e9  #: most cells x steps of one march
     native_times: bool = False
+    rest: FloatArray | None = None  #: (g,) tension at rest [N], where the first row is not at rest
+
+    def apart(self, tension: FloatArray, reference: FloatArray) -> float:
+        """Return how far two tensions (n, g) [N] lie apart, relative to the dynamic part."""
+        return relative_difference(tension, reference, self.rest)
 
     @property
     def sudden(self) -> bool:

@@ -20,9 +20,12 @@ from tethertest.solver.norms import goes_slack
 from tethertest.solver.numbers import SceneNumbers, scene_numbers
 from tethertest.solver.problem import Problem
 from tethertest.solver.spread import Spread, sideways_error, slack_spread
+from tethertest.solver.statics.equilibrium import rest_chain
 
 Fidelity = Literal["auto", "catenary", "linear", "nonlinear"]
 
+#: cells of the chain that gives the tension at rest
+_REST_CELLS = 50
 #: meshes that a refinement usually goes through, coarse to fine
 MESHES = (10, 20, 40, 80, 160)
 
@@ -86,6 +89,8 @@ def solve(
         message = f"scene {scene.name!r}: its wind is in a file that has not been read"
         raise DataError(message, "give solve(scene, wind=read_wind(scene)), or leave out [air] wind_file")
     problem = Problem(scene, wanted, measured, wind, cells, finest, native_times=native_times)
+    if problem.sudden:
+        problem = replace(problem, rest=rest_tension(scene))
     numbers = scene_numbers(scene, measured)
     chosen = _chosen(problem, numbers, fidelity, scheme)
     refined = chosen.refined
@@ -150,7 +155,7 @@ def _response(
         status = Status.SLACK_IN_LINEAR if refined.fidelity == "linear" else Status.SLACK_IN_CATENARY
     elif status is Status.OK and (refined.error + (chosen.model_error or 0.0)) > problem.tolerance:
         status = Status.MODEL_ERROR
-    rest = tension[0]
+    rest = tension[0] if problem.rest is None else problem.rest
     return Response(
         scene=scene,
         status=status,
@@ -185,6 +190,15 @@ def _response(
             "largest_strain_change": float(np.max(np.abs(solution.strain))),
         },
     )
+
+
+def rest_tension(scene: Scene) -> FloatArray:
+    """Return the tension at rest (g,) [N] at the gauges of a scene."""
+    rest = rest_chain(scene, _REST_CELLS)
+    ends = [float(np.linalg.norm(force)) for force in (rest.start_force, rest.end_force)]
+    places = np.concatenate([[0.0], (np.arange(_REST_CELLS) + 0.5) / _REST_CELLS, [1.0]])
+    along = np.concatenate([ends[:1], rest.tension, ends[1:]])
+    return np.asarray(np.interp(scene.output.gauges, places, along))
 
 
 def slack_intervals(time_axis: FloatArray, tension: FloatArray) -> tuple[tuple[float, float], ...]:

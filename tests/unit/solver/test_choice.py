@@ -131,3 +131,12 @@ def test_a_step_budget_that_does_not_suffice_is_said() -> None:
     ended = solve(SNAP, finest=10, spread=False)
     assert ended.status is not Status.OK
     assert ended.error.numerical > 0.01
+
+
+def test_a_sudden_start_is_measured_from_rest_and_not_from_its_first_row() -> None:
+    sudden = replace(TAUT, bottom=replace(TAUT.bottom, start="jump", ramp=None))
+    answer = solve(sudden)
+    rest = np.array([80.0, 80.0, 80.0]) + np.array([0.0, 0.5, 1.0]) * 0.0333 * 150.0 * 9.80665
+    assert answer.tension[0, 0] < 79.0
+    expected = np.max(np.abs(answer.tension - rest)) / rest[-1]
+    assert answer.numbers["dynamic_over_static"] == pytest.approx(expected, rel=1e-6)

@@ -17,7 +17,6 @@ from tethertest.records.response import Status
 from tethertest.solver.linear.axial_waves import run_axial_waves
 from tethertest.solver.linear.shallow import solve_shallow
 from tethertest.solver.linear.transfer import run_axial_transform
-from tethertest.solver.norms import relative_difference
 from tethertest.solver.problem import Problem, Refined
 from tethertest.solver.solution import Solution
 from tethertest.solver.terms import bottom_direction
@@ -94,7 +93,7 @@ def _along(problem: Problem) -> Refined:
     error = np.inf
     for factor in _FACTORS[1:]:
         fine = run_axial_transform(scene, measured=measured, factor=factor)
-        error = relative_difference(coarse.tension, fine.tension) + _ROUNDING
+        error = problem.apart(coarse.tension, fine.tension) + _ROUNDING
         coarse = fine
         if error <= problem.tolerance:
             break
@@ -131,7 +130,7 @@ def _paired(
     while 2 * cells <= problem.finest:
         cells *= 2
         fine = run(cells)
-        error = _apart(coarse, fine) / order
+        error = _apart(problem, coarse, fine) / order
         coarse = fine
         if error <= problem.tolerance:
             break
@@ -139,7 +138,7 @@ def _paired(
     return Refined(coarse, "linear", name, cells, error, status)
 
 
-def _apart(coarse: Solution, fine: Solution) -> float:
+def _apart(problem: Problem, coarse: Solution, fine: Solution) -> float:
     """Return the relative difference of two runs, at the times of the coarser one."""
     read = [np.interp(coarse.time, fine.time, series) for series in fine.tension.T]
-    return relative_difference(coarse.tension, np.column_stack(read))
+    return problem.apart(coarse.tension, np.column_stack(read))

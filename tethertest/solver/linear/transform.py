@@ -82,7 +82,7 @@ def refined_response(
             fronts = outputs.fronts(cable, line, drive)
         fine = outputs.response(cable, line, drive, fronts)
         if coarse is not None:
-            error = relative_difference(coarse.tension, fine.tension)
+            error = relative_difference(coarse.tension, fine.tension, cable.tension)
             if drive.start_velocity and cable.length < _TRAVERSE_SAMPLES * drive.step * cable.axial_speed:
                 error = math.inf  # both of the pair miss the same reflections
             if error <= tolerance:

@@ -14,7 +14,7 @@ import numpy as np
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Status
 from tethertest.solver.nonlinear.chain_march import chain_case, run_chain
-from tethertest.solver.norms import finished, goes_slack, relative_difference
+from tethertest.solver.norms import finished, goes_slack
 from tethertest.solver.numbers import SceneNumbers
 from tethertest.solver.problem import Problem, Refined
 from tethertest.solver.resample import resampled
@@ -83,13 +83,13 @@ def _refine_taut(problem: Problem, meshes: list[int]) -> Refined | None:
             return None
         runs.append(run)
         if len(runs) > 1:
-            differences.append(relative_difference(runs[-2].tension, run.tension))
+            differences.append(problem.apart(runs[-2].tension, run.tension))
             extrapolated.append(_extrapolated(runs[-2], run))
         if len(runs) > 2:
             if sudden:
                 error = _error_of_falling(differences)
             else:
-                apart = relative_difference(extrapolated[-2].tension, extrapolated[-1].tension)
+                apart = problem.apart(extrapolated[-2].tension, extrapolated[-1].tension)
                 ratio = differences[-2] / max(differences[-1], 1e-300)
                 at_order = _AT_ORDER[0] < ratio < _AT_ORDER[1]
                 error = apart / (_FOURTH_ORDER if at_order else _BEFORE_ORDER) + _FLOOR
@@ -107,7 +107,7 @@ def _refine_taut(problem: Problem, meshes: list[int]) -> Refined | None:
     if problem.native_times:
         run = run_chain(problem.scene, used, viscous=False, measured=problem.measured, wind=problem.wind,
                         native_times=True)  # fmt: skip
-        fine = relative_difference(runs[-1].tension, extrapolated[-1].tension) + error
+        fine = problem.apart(runs[-1].tension, extrapolated[-1].tension) + error
         met = Status.OK if fine <= problem.tolerance else status
         return Refined(run, "nonlinear", TAUT, used, fine, met)
     return Refined(extrapolated[-1], "nonlinear", EXTRAPOLATED, used, error, status)
@@ -125,7 +125,7 @@ def _refine_viscous(problem: Problem, meshes: list[int]) -> Refined:
         if not finished(solution):
             break
         if before is not None:
-            differences.append(relative_difference(before.tension, solution.tension))
+            differences.append(problem.apart(before.tension, solution.tension))
             error = _SLACK_MARGIN * max(differences[-1], 0.5 * differences[-2] if differences[1:] else 0.0)
             if differences[1:]:
                 error = max(error, _error_of_falling(differences))

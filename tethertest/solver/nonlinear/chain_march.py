@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -85,6 +86,21 @@ def chain_case(
     DataError
         The scene has no rest.
     """
+    try:
+        hash(scene)
+    except TypeError:  # built with lists in the place of tuples
+        return _chain_case(scene, cells, viscous, measured, wind, sideways)
+    return kept_case(scene, cells, viscous, measured, wind, sideways)
+
+
+def _chain_case(
+    scene: Scene,
+    cells: int,
+    viscous: bool,
+    measured: MeasuredMotion | None,
+    wind: WindSeries | None,
+    sideways: bool,
+) -> ChainCase:
     if wind is not None and scene.air is not None:
         first = tuple(float(component) for component in wind.velocity[0])
         scene = replace(scene, air=replace(scene.air, wind=first))
@@ -113,6 +129,10 @@ def chain_case(
     speed = float(np.max(np.abs(velocity(scene.bottom, _span(scene.output), measured))))
     speed = _AIR_SPEED_SHARE * (speed + float(np.max(np.linalg.norm(np.atleast_2d(blown), axis=1))))
     return ChainCase(scene, rest, line, top, direction, axes, courant_limit(line, top, speed))
+
+
+#: a refinement asks for each mesh's rest several times
+kept_case = lru_cache(maxsize=16)(_chain_case)
 
 
 def dimensions(scene: Scene, rest: RestChain, wind: WindSeries | None = None) -> int:

@@ -12,6 +12,7 @@ from tethertest.errors import DataError
 from tethertest.records.response import Response, Status
 from tethertest.records.scene import Scene
 from tethertest.solver import solve
+from tethertest.solver.nonlinear.chain_march import kept_case
 from tethertest.solver.solve import Fidelity
 from tethertest.studies.coverage.random_scenes import random_scene
 from tethertest.studies.coverage.reference import (
@@ -169,6 +170,7 @@ def _times(scene: Scene, reference: Reference, tolerance: float) -> tuple[float,
 def _timed(scene: Scene, fidelity: Fidelity, tolerance: float) -> tuple[float, Response]:
     walls = []
     for _ in range(_REPEATS):
+        kept_case.cache_clear()
         began = time.perf_counter()
         response = solve(scene, fidelity=fidelity, tolerance=tolerance, finest=_FINEST, spread=False)
         walls.append(time.perf_counter() - began)

@@ -47,6 +47,12 @@ def relative(found: FloatArray, reference: FloatArray) -> float:
     return float(np.sqrt(np.max(np.mean((found - reference) ** 2, axis=0))) / dynamic)
 
 
+@pytest.fixture(autouse=True)
+def forget(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make every case anew: these tests change what it is made of."""
+    monkeypatch.setattr(chain_march, "kept_case", chain_march._chain_case)
+
+
 def both_ways(monkeypatch: pytest.MonkeyPatch, scene: Scene, cells: int) -> tuple[Solution, Solution]:
     solutions = []
     for limit in WAYS.values():

@@ -125,6 +125,42 @@ def pull_cells_elastic(
 
 
 @compiled
+def pull_plane(
+    position: FloatArray,
+    per_cell: float,
+    stiffness: float,
+    stretch: FloatArray,
+    tension: FloatArray,
+    force: FloatArray,
+) -> None:
+    """Do in one pass what `stretch_cells` and `pull_cells_elastic` do in a plane, without directions.
+
+    Parameters
+    ----------
+    position : (2, n + 1) float64
+        Nodes.
+    per_cell, stiffness : float
+        Reciprocal cell length [1/m] and EA [N].
+    stretch : (n,) float64
+        Filled.
+    tension : (n + 2,) float64
+        The inner ``n`` filled [N].
+    force : (2, n) float64
+        Filled [N].
+    """
+    for i in range(stretch.size):
+        x = (position[0, i + 1] - position[0, i]) * per_cell
+        z = (position[1, i + 1] - position[1, i]) * per_cell
+        new = np.sqrt(x * x + z * z)
+        total = max(0.0, stiffness * (new - 1.0))
+        share = np.divide(total, max(new, _TINY))
+        stretch[i] = new
+        tension[i + 1] = total
+        force[0, i] = share * x
+        force[1, i] = share * z
+
+
+@compiled
 def drag_nodes(
     along: FloatArray,
     velocity: FloatArray,

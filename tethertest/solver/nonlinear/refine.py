@@ -31,7 +31,7 @@ _RESONANT, _OFF_RESONANCE = (1.6, 2.5), 0.9
 #: ratio of successive differences from which the scheme counts as being at its order
 _AT_ORDER = (3.8, 4.2)
 #: what a difference of extrapolated answers overestimates the finer one's error by: at order, and before it
-_FOURTH_ORDER, _BEFORE_ORDER = 4.0, 1.0
+_FOURTH_ORDER, _BEFORE_ORDER = 3.0, 0.75
 #: what rows between time levels and rounding leave of any extrapolated answer
 _FLOOR = 5e-8
 #: differences that shrink by less than this twice running do not settle

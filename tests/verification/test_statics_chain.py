@@ -219,7 +219,8 @@ def test_lift_weight_and_air_on_cable_and_body_balance_the_bottom_force(
     air[[0, -1]] *= 0.5
     forward = 8.0 * math.cos(0.2) - 1.0 * math.sin(0.2)
     upward = 8.0 * math.sin(0.2) + 1.0 * math.cos(0.2)
-    on_body = 0.5 * 1.225 * np.array([0.1 * forward**2, 0.1 * 4.0**2, 0.2 * upward**2])
+    across = np.hypot(forward, 4.0)
+    on_body = 0.5 * 1.225 * np.array([0.1 * forward * across, 0.1 * 4.0 * across, 0.2 * upward**2])
     body = np.array(
         [
             on_body[0] * math.cos(0.2) + on_body[2] * math.sin(0.2),

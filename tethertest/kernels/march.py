@@ -54,8 +54,8 @@ class UpperEnd(NamedTuple):
     lift: FloatArray  #: (d,) [N]
     stiffness: FloatArray  #: (d,) [N/m]
     damping: FloatArray  #: (d,) [N s/m]
-    body_axes: FloatArray  #: (m, d) unit vectors along which the body resists the air
-    body_drag: FloatArray  #: (m,) force per velocity squared along them [N s^2/m^2]
+    body_axes: FloatArray  #: (3, d) or empty: the body's x, y and z axes; x and y share the speed across z
+    body_drag: FloatArray  #: (3,) or empty: force per velocity squared along them [N s^2/m^2]
 
 
 @compiled
@@ -116,6 +116,7 @@ def march(
     load = np.zeros((d, n + 1))  #: force per node that depends on shape and motion
     along, force = np.zeros((d, n)), np.zeros((d, n))
     stretch, rate, work = np.zeros(n), np.zeros(n + 2), np.zeros((5, n))
+    slip = np.zeros(3)
     end_share, end_mass = np.zeros(d), np.full(d, top.mass + half_mass)
     if not top.fixed:
         end_mass += 0.5 * time_step * top.damping
@@ -128,7 +129,7 @@ def march(
     for c in range(d):
         position[c, 0] = start[c] + bottom[0] * direction[c]
     stretch_cells(position, per_cell, stretch, rate, along)
-    before, last_top = bottom[0], position[d - 1, n]
+    before, last_top = bottom[1], position[d - 1, n]  # the motion goes on backwards as its mirror image
     row, bin_number, bin_end, next_row = 0, 0, record.bin_steps, 0.0
     for k in range(steps):
         if lean:
@@ -142,6 +143,8 @@ def march(
             for c in range(d):
                 for i in range(n):
                     force[c, i] = along[c, i] * station[i + 1]
+        # a sudden start has its speed from the first instant on
+        bottom_speed = (0.5 * (bottom[k + 1] - before) if k > 0 else bottom[1] - bottom[0]) * per_step
         if wind.shape[1] > 1:
             for c in range(d):
                 gust[c] = wind[c, k]
@@ -151,7 +154,7 @@ def march(
                     for i in range(1, n + 1):
                         levels[c, i] = 1.5 * velocity[c, i] - 0.5 * older[c, i]
                         older[c, i] = velocity[c, i]
-                    levels[c, 0] = 0.5 * (bottom[k + 1] - before) * per_step * direction[c]
+                    levels[c, 0] = bottom_speed * direction[c]
                 drag_nodes(
                     along, levels, gust, line.normal_drag, line.tangential_drag, line.cell, *scratch, load
                 )
@@ -167,11 +170,14 @@ def march(
                 pull[c] = lift[c] + (top.mass + half_mass) * gravity[c] + load[c, n]
                 pull[c] -= force[c, n - 1] + end_stiffness[c] * (position[c, n] - rest[c])
             for j in range(body_drag.size):
-                slip = 0.0
+                slip[j] = 0.0
                 for c in range(d):
-                    slip += body_axes[j, c] * (gust[c] - levels[c, n])
+                    slip[j] += body_axes[j, c] * (gust[c] - levels[c, n])
+            across = np.sqrt(slip[0] * slip[0] + slip[1] * slip[1])  # the body is round about its z axis
+            for j in range(body_drag.size):
+                push = body_drag[j] * (abs(slip[j]) if j == 2 else across) * slip[j]
                 for c in range(d):
-                    pull[c] += body_drag[j] * abs(slip) * slip * body_axes[j, c]
+                    pull[c] += push * body_axes[j, c]
             for c in range(d):
                 brake = time_step * end_damping[c] / end_mass[c]
                 velocity[c, n] += time_step * pull[c] / end_mass[c] - brake * velocity[c, n]
@@ -220,7 +226,7 @@ def march(
                     for i in range(1, n):
                         gain = per_mass * (force[c, i] - force[c, i - 1] + load[c, i]) + fall[c]
                         levels[c, i] = velocity[c, i] - 0.5 * gain
-                    levels[c, 0] = 0.5 * (bottom[k + 1] - before) * per_step * direction[c]
+                    levels[c, 0] = bottom_speed * direction[c]
                     levels[c, n] = 0.5 * (velocity[c, n] + old_end[c])
                 places = (record.node_index, record.node_weight)
                 sample_motion(places, position, levels, along, stretch, line.cell, now)

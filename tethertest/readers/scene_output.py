@@ -15,6 +15,10 @@ _PLAIN_VALUES = 2
 _FIELD_VALUES = {"position": 3, "velocity": 3, "curvature": 1}
 
 
+#: fewest output rows per period of the drive; at two, all may lie on zeros of a sine
+_ROWS_PER_PERIOD = 2.1
+
+
 def output_problems(scene: Scene) -> Iterator[Problem]:
     """Yield what is wrong between the keys of a scene's output."""
     output = scene.output
@@ -32,11 +36,11 @@ def output_problems(scene: Scene) -> Iterator[Problem]:
         yield Problem(("output", "rate"), text, "raise the rate or the duration")
     frequency = scene.bottom.frequency
     if frequency is not None and scene.bottom.motion in {"harmonic", "crank-slider"}:
-        needed = 2.0 * frequency
+        needed = _ROWS_PER_PERIOD * frequency
         if output.rate < needed:
             text = (
-                f"found {output.rate:g} Hz, expected at least {needed:g} Hz, twice the drive's frequency: "
-                "rows so far apart would show another motion"
+                f"found {output.rate:g} Hz, expected at least {needed:g} Hz, above twice the drive's "
+                "frequency: rows so far apart would show another motion"
             )
             yield Problem(("output", "rate"), text, f'write `rate = "{20.0 * frequency:g} Hz"`, or more')
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from tethertest.errors import DataError
 from tethertest.records.response import Status
 from tethertest.solver.linear.refine import moves_along, refine_linear
@@ -14,6 +16,7 @@ from tethertest.solver.numbers import SceneNumbers
 from tethertest.solver.problem import Problem, Refined
 from tethertest.solver.quasi_static.catenary_run import run_catenary
 from tethertest.solver.quasi_static.validity import MARGIN, quasi_static_allowed, quasi_static_error
+from tethertest.solver.statics.equilibrium import rest_tension
 
 #: time of one node-step of the nonlinear march, for the choice alone [s]
 _NODE_STEP = 8e-9
@@ -60,20 +63,25 @@ def judged_linear(problem: Problem, numbers: SceneNumbers, refined: Refined) -> 
         return Chosen(refined, error, warnings)
     coarse = replace(problem, finest=_JUDGING_MESH, native_times=False, cells=None)
     nonlinear = refine_nonlinear(coarse, numbers)
-    rows = refined.solution.tension
-    if rows.shape != nonlinear.solution.tension.shape:  # at the scheme's own times
-        return Chosen(refined, None)
-    return Chosen(refined, problem.apart(rows, nonlinear.solution.tension))
+    rows, found = refined.solution, nonlinear.solution
+    read = [np.interp(rows.time, found.time, series) for series in found.tension.T]
+    return Chosen(refined, problem.apart(rows.tension, np.column_stack(read)))
 
 
 def judged_catenary(problem: Problem) -> Chosen:
     """Solve quasi-statically, with the error that its own neglected forces make."""
+    if problem.wind is not None:
+        message = f"scene {problem.scene.name!r}: the quasi-static cable has no gusts"
+        raise DataError(message, "leave out the wind series, or use the nonlinear model")
+    if problem.cells is not None:
+        message = f"scene {problem.scene.name!r}: the quasi-static cable has no mesh"
+        raise DataError(message, "leave out the cells, or use the nonlinear model")
     estimate = quasi_static_error(problem.scene, measured=problem.measured)
     refined = _catenary(problem)
     warnings: tuple[str, ...] = ()
     if estimate.slack:
         warnings = ("the quasi-static cable goes slack: its error has no bound",)
-    return Chosen(refined, MARGIN * estimate.error, warnings)
+    return Chosen(refined, MARGIN * estimate.error + _rest_error(problem, refined), warnings)
 
 
 def _try_waves(problem: Problem, numbers: SceneNumbers) -> Chosen | None:
@@ -89,7 +97,10 @@ def _try_waves(problem: Problem, numbers: SceneNumbers) -> Chosen | None:
     quick = run_chain(scene, FIRST_MESH, measured=problem.measured)
     if goes_slack(quick):
         return None
-    refined = refine_linear(problem)
+    try:
+        refined = refine_linear(problem)
+    except DataError:  # the march takes what the exact waves do not
+        return None
     if goes_slack(refined.solution):
         return None
     chosen = judged_linear(problem, numbers, refined)
@@ -110,7 +121,9 @@ def _try_catenary(problem: Problem, numbers: SceneNumbers) -> Chosen | None:
         return None
     if not permission.allowed:
         return None
-    return Chosen(_catenary(problem), MARGIN * permission.estimate.error)
+    refined = _catenary(problem)
+    error = MARGIN * permission.estimate.error + _rest_error(problem, refined)
+    return Chosen(refined, error) if error <= problem.tolerance else None
 
 
 def _try_shallow(problem: Problem, numbers: SceneNumbers) -> Chosen | None:
@@ -143,9 +156,20 @@ def _catenary(problem: Problem) -> Refined:
     return Refined(solution, "catenary", "elastic catenary through the ends", 0, 0.0, Status.OK)
 
 
+def _rest_error(problem: Problem, refined: Refined) -> float:
+    """Return how far the rest in wind is off, which the quasi-static cable takes as a uniform load."""
+    scene = problem.scene
+    if scene.air is None or not np.any(scene.air.wind):
+        return 0.0
+    tension = refined.solution.tension
+    off = float(np.max(np.abs(tension[0] - rest_tension(scene))))
+    dynamic = float(np.sqrt(np.max(np.mean((tension - tension[0]) ** 2, axis=0))))
+    return off / dynamic if dynamic > 0.0 else float("inf")
+
+
 def _blown(problem: Problem) -> bool:
     """Return whether steady wind bows the cable."""
-    return len(chain_case(problem.scene, 2, measured=problem.measured).axes) > 1
+    return len(chain_case(problem.scene, FIRST_MESH, measured=problem.measured).axes) > 1
 
 
 def _drag_along(problem: Problem) -> float:

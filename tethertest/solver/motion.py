@@ -31,7 +31,7 @@ def displacement(bottom: Bottom, time: FloatArray, measured: MeasuredMotion | No
     time : (n,) float64
         [s] from the start.
     measured : MeasuredMotion, optional
-        Needed for ``motion = "measured"``; held at its end values outside its span.
+        Needed for ``motion = "measured"``; continued with uniform acceleration outside its span.
 
     Returns
     -------
@@ -157,7 +157,9 @@ def _measured(time: FloatArray, measured: MeasuredMotion | None) -> FloatArray:
 
     data = _given(measured)
     spline = CubicSpline(data.time, data.displacement)
-    return np.asarray(spline(np.clip(time, data.time[0], data.time[-1])), dtype=np.float64)
+    inside = np.clip(time, data.time[0], data.time[-1])
+    beyond = time - inside  # a step or two of the solver's: uniform acceleration goes on
+    return np.asarray(spline(inside) + beyond * (spline(inside, 1) + 0.5 * beyond * spline(inside, 2)))
 
 
 def _measured_velocity(time: FloatArray, measured: MeasuredMotion | None) -> FloatArray:
@@ -165,8 +167,8 @@ def _measured_velocity(time: FloatArray, measured: MeasuredMotion | None) -> Flo
 
     data = _given(measured)
     spline = CubicSpline(data.time, data.displacement)
-    inside = (time >= data.time[0]) & (time <= data.time[-1])
-    return np.where(inside, spline(time, 1), 0.0)
+    inside = np.clip(time, data.time[0], data.time[-1])
+    return np.asarray(spline(inside, 1) + (time - inside) * spline(inside, 2))
 
 
 def _given(measured: MeasuredMotion | None) -> MeasuredMotion:

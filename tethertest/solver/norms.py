@@ -8,7 +8,7 @@ from tethertest.records.arrays import FloatArray
 from tethertest.solver.solution import Solution
 
 #: dynamic part, relative to the tension at rest, below which nothing moves
-_STILL = 1e-9
+_STILL = 2e-7
 
 
 def relative_difference(

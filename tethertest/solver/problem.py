@@ -29,7 +29,7 @@ class Problem:
     measured: MeasuredMotion | None = None
     wind: WindSeries | None = None
     cells: int | None = None  #: solve on this mesh alone
-    finest: int = 640  #: finest mesh that may be tried
+    finest: int = 1280  #: finest mesh that may be tried
     node_steps: float = 4e9  #: most cells x steps of one march
     native_times: bool = False
     rest: FloatArray | None = None  #: (g,) tension at rest [N], where the first row is not at rest

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -12,20 +12,19 @@ from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import ErrorBudget, Response, Status
 from tethertest.records.scene import MeasuredMotion, Scene, WindSeries
+from tethertest.solver.checks import check_scene
 from tethertest.solver.choice import Chosen, choose, judged_catenary, judged_linear
 from tethertest.solver.linear.refine import LinearScheme, refine_linear
 from tethertest.solver.nonlinear.chain_march import chain_case
-from tethertest.solver.nonlinear.refine import refine_nonlinear
+from tethertest.solver.nonlinear.refine import FIRST_MESH, refine_nonlinear
 from tethertest.solver.norms import goes_slack
 from tethertest.solver.numbers import SceneNumbers, scene_numbers
 from tethertest.solver.problem import Problem
 from tethertest.solver.spread import Spread, sideways_error, slack_spread
-from tethertest.solver.statics.equilibrium import rest_chain
+from tethertest.solver.statics.equilibrium import rest_tension
 
 Fidelity = Literal["auto", "catenary", "linear", "nonlinear"]
 
-#: cells of the chain that gives the tension at rest
-_REST_CELLS = 50
 #: meshes that a refinement usually goes through, coarse to fine
 MESHES = (10, 20, 40, 80, 160)
 
@@ -39,7 +38,7 @@ def solve(
     scheme: LinearScheme = "auto",
     tolerance: float | None = None,
     cells: int | None = None,
-    finest: int = 640,
+    finest: int = 1280,
     native_times: bool = False,
     spread: bool = True,
 ) -> Response:
@@ -85,6 +84,7 @@ def solve(
     if not 0.0 < wanted <= 1.0:
         message = f"found a tolerance of {wanted:g}, expected more than 0 and at most 1"
         raise DataError(message, "give a relative error such as 0.01")
+    check_scene(scene, measured, wind)
     if wind is None and scene.air is not None and scene.air.wind_file is not None:
         message = f"scene {scene.name!r}: its wind is in a file that has not been read"
         raise DataError(message, "give solve(scene, wind=read_wind(scene)), or leave out [air] wind_file")
@@ -102,7 +102,7 @@ def solve(
         warnings += _slack_warnings(scene)
         if spread and cells is None and refined.status is not Status.NOT_FINITE:
             members = slack_spread(problem, refined.cells)
-            if len(chain_case(scene, 2, measured=measured, wind=wind).axes) == 1:
+            if len(chain_case(scene, FIRST_MESH, measured=measured, wind=wind).axes) == 1:
                 model_error = sideways_error(problem, refined.cells)
                 warnings.append(_sideways_warning(model_error))
     chosen = replace(chosen, model_error=model_error, warnings=tuple(warnings))
@@ -110,6 +110,13 @@ def solve(
 
 
 def _chosen(problem: Problem, numbers: SceneNumbers, fidelity: Fidelity, scheme: LinearScheme) -> Chosen:
+    if fidelity not in get_args(Fidelity) or scheme not in get_args(LinearScheme):
+        message = f"found fidelity {fidelity!r} and scheme {scheme!r}"
+        known = f"{', '.join(get_args(Fidelity))}; {', '.join(get_args(LinearScheme))}"
+        raise DataError(message, f"they are: {known}")
+    if fidelity in {"catenary", "nonlinear"} and scheme != "auto":
+        message = f"the scheme {scheme!r} belongs to the linear model, not to {fidelity!r}"
+        raise DataError(message, "leave out the scheme, or set the fidelity to linear")
     if fidelity == "catenary":
         return judged_catenary(problem)
     if fidelity == "linear" or scheme != "auto":
@@ -153,7 +160,11 @@ def _response(
     status = refined.status
     if taut_model and status is not Status.NOT_FINITE and goes_slack(solution):
         status = Status.SLACK_IN_LINEAR if refined.fidelity == "linear" else Status.SLACK_IN_CATENARY
-    elif status is Status.OK and (refined.error + (chosen.model_error or 0.0)) > problem.tolerance:
+    elif (
+        status is Status.OK
+        and chosen.model_error is not None
+        and (refined.error + chosen.model_error) > problem.tolerance
+    ):
         status = Status.MODEL_ERROR
     rest = tension[0] if problem.rest is None else problem.rest
     return Response(
@@ -190,15 +201,6 @@ def _response(
             "largest_strain_change": float(np.max(np.abs(solution.strain))),
         },
     )
-
-
-def rest_tension(scene: Scene) -> FloatArray:
-    """Return the tension at rest (g,) [N] at the gauges of a scene."""
-    rest = rest_chain(scene, _REST_CELLS)
-    ends = [float(np.linalg.norm(force)) for force in (rest.start_force, rest.end_force)]
-    places = np.concatenate([[0.0], (np.arange(_REST_CELLS) + 0.5) / _REST_CELLS, [1.0]])
-    along = np.concatenate([ends[:1], rest.tension, ends[1:]])
-    return np.asarray(np.interp(scene.output.gauges, places, along))
 
 
 def slack_intervals(time_axis: FloatArray, tension: FloatArray) -> tuple[tuple[float, float], ...]:

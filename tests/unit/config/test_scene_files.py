@@ -164,7 +164,7 @@ MISTAKES = {
         '"1 kHz"',
         '"0.3 Hz"',
         "output.rate",
-        "at least 0.4 Hz, twice the drive's frequency",
+        "at least 0.42 Hz, above twice the drive's frequency",
     ),
     "one row": ('"40 s"', '"0.5 ms"', "output.rate", "no row but the first"),
     "too many values": ('"1 kHz"', '"1 MHz"', "output.rate", "2.4e+08 values, expected at most 5e+07"),

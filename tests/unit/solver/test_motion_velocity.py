@@ -59,9 +59,13 @@ def test_velocity_at_the_start_is_the_one_just_after_it(name: str, expected: flo
     assert velocity(MOTIONS[name], np.zeros(1), DATA)[0] == pytest.approx(expected, rel=1e-3, abs=1e-15)
 
 
-def test_measured_motion_rests_outside_its_span() -> None:
-    later = MeasuredMotion(SAMPLES + 1.0, DATA.displacement)
-    assert velocity(MOTIONS["measured"], np.array([0.5, 7.001]), later).tolist() == [0.0, 0.0]
+def test_measured_motion_goes_on_with_uniform_acceleration() -> None:
+    """A free fall that ends with its record falls on: x = a t^2/2, v = a t."""
+    time = np.linspace(0.0, 2.0, 201)
+    fall = MeasuredMotion(time, 1.5 * time**2)
+    beyond = np.array([2.0, 2.01, 2.1])
+    np.testing.assert_allclose(displacement(MOTIONS["measured"], beyond, fall), 1.5 * beyond**2, rtol=1e-9)
+    np.testing.assert_allclose(velocity(MOTIONS["measured"], beyond, fall), 3.0 * beyond, rtol=1e-9)
 
 
 @pytest.mark.parametrize(

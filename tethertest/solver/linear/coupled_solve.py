@@ -99,7 +99,7 @@ def continued(scene: Scene, measured: MeasuredMotion | None) -> Callable[[FloatA
     """Return the motion at any time; data that end with the record go on as their own mirror image."""
 
     def motion(time: FloatArray) -> FloatArray:
-        if measured is None or measured.time[-1] < scene.output.duration:
+        if measured is None:
             return displacement(scene.bottom, time, measured)
         end = float(measured.time[-1])
         inside = displacement(scene.bottom, np.where(time > end, 2.0 * end - time, time), measured)

@@ -13,6 +13,7 @@ import numpy as np
 
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Status
+from tethertest.solver.motion import velocity
 from tethertest.solver.nonlinear.chain_march import chain_case, run_chain
 from tethertest.solver.norms import finished, goes_slack
 from tethertest.solver.numbers import SceneNumbers
@@ -57,14 +58,23 @@ def refine_nonlinear(problem: Problem, numbers: SceneNumbers) -> Refined:
         The scene has no rest.
     """
     if problem.cells is not None:
-        solution = _march_viscous(problem, problem.cells)
-        return Refined(solution, "nonlinear", VISCOUS, problem.cells, np.nan, _ended(solution, Status.OK))
-    along = len(chain_case(problem.scene, 2, measured=problem.measured, wind=problem.wind).axes) == 1
+        solution = run_chain(
+            problem.scene,
+            problem.cells,
+            measured=problem.measured,
+            wind=problem.wind,
+            native_times=problem.native_times,
+        )
+        status = _ended(solution, Status.UNJUDGED)
+        return Refined(solution, "nonlinear", VISCOUS, problem.cells, np.nan, status)
+    case = chain_case(problem.scene, FIRST_MESH, measured=problem.measured, wind=problem.wind)
+    along = len(case.axes) == 1
     ratio = numbers.drive_over_axial if along else numbers.drive_over_first
     needed = CELLS_PER_HALF_WAVE * ratio
     first = FIRST_MESH * 2 ** max(0, int(np.ceil(np.log2(max(1.0, needed / FIRST_MESH)))))
+    first = min(first, max(2, problem.finest // 4))  # an error needs three meshes
     meshes = [first]
-    while 2 * meshes[-1] <= max(problem.finest, 2 * first):
+    while 2 * meshes[-1] <= max(problem.finest, 8):
         meshes.append(2 * meshes[-1])
     taut = _refine_taut(problem, meshes)
     return _refine_viscous(problem, meshes) if taut is None else taut
@@ -87,12 +97,14 @@ def _refine_taut(problem: Problem, meshes: list[int]) -> Refined | None:
             extrapolated.append(_extrapolated(runs[-2], run))
         if len(runs) > 2:
             if sudden:
-                error = _error_of_falling(differences)
+                error = max(_error_of_falling(differences), _front_error(problem, run, cells))
             else:
                 apart = problem.apart(extrapolated[-2].tension, extrapolated[-1].tension)
                 ratio = differences[-2] / max(differences[-1], 1e-300)
                 at_order = _AT_ORDER[0] < ratio < _AT_ORDER[1]
                 error = apart / (_FOURTH_ORDER if at_order else _BEFORE_ORDER) + _FLOOR
+                if problem.native_times:  # its rows are the finest mesh's own
+                    error += problem.apart(run.tension, extrapolated[-1].tension)
             if not sudden and _stalls(differences):
                 return None
             if error <= problem.tolerance:
@@ -105,11 +117,9 @@ def _refine_taut(problem: Problem, meshes: list[int]) -> Refined | None:
     if sudden or not extrapolated:
         return Refined(runs[-1], "nonlinear", TAUT, used, error, status)
     if problem.native_times:
-        run = run_chain(problem.scene, used, viscous=False, measured=problem.measured, wind=problem.wind,
-                        native_times=True)  # fmt: skip
-        fine = problem.apart(runs[-1].tension, extrapolated[-1].tension) + error
-        met = Status.OK if fine <= problem.tolerance else status
-        return Refined(run, "nonlinear", TAUT, used, fine, met)
+        run = run_chain(problem.scene, used, viscous=False, courant=courant, measured=problem.measured,
+                        wind=problem.wind, native_times=True)  # fmt: skip
+        return Refined(run, "nonlinear", TAUT, used, error, status)
     return Refined(extrapolated[-1], "nonlinear", EXTRAPOLATED, used, error, status)
 
 
@@ -196,6 +206,26 @@ def _extrapolated(coarse: Solution, fine: Solution) -> Solution:
         platform_position=limit(coarse.platform_position, fine.platform_position),
         fields={name: limit(coarse.fields[name], values) for name, values in fine.fields.items()},
     )
+
+
+def _front_error(problem: Problem, run: Solution, cells: int) -> float:
+    """Return what rows that lie on a front may be off by, on all meshes alike.
+
+    A sudden start sends a front of ``Z v`` along the cable, twice as high at a fixed end. A row within a step
+    of its arrival may miss half of it.
+    """
+    case = chain_case(problem.scene, cells, viscous=False, measured=problem.measured, wind=problem.wind)
+    speed = float(np.abs(velocity(problem.scene.bottom, np.zeros(1), problem.measured))[0])
+    jump = float(np.sqrt(case.rest.stiffness * case.rest.mass)) * speed
+    traverse = cells * case.time_step / case.courant
+    gauges = np.asarray(problem.scene.output.gauges)
+    trips = np.mod(run.time[1:, None] / traverse, 2.0)
+    away = np.minimum(np.abs(trips - gauges), np.abs(trips - (2.0 - gauges)))
+    away = np.minimum(away, np.minimum(2.0 - trips + gauges, trips + gauges))  # arrivals a round trip apart
+    hit = float(np.max(np.mean(away * cells < 1.5, axis=0)))
+    rest = run.tension[0] if problem.rest is None else problem.rest
+    dynamic = float(np.sqrt(np.max(np.mean((run.tension - rest) ** 2, axis=0))))
+    return jump * float(np.sqrt(hit)) / max(dynamic, 1e-300)
 
 
 def _error_of_falling(differences: list[float]) -> float:

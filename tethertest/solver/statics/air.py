@@ -57,4 +57,8 @@ def body_drag(scene: Scene) -> FloatArray:
     """Return the steady wind's force (3,) [N] on the platform at rest: quadratic along each of its axes."""
     axes, drag = body_axes(scene)
     slip = axes @ steady_wind(scene)
-    return np.asarray((drag * np.abs(slip) * slip) @ axes)
+    if slip.size == 0:
+        return np.zeros(3)
+    across = float(np.hypot(slip[0], slip[1]))  # the body is round about its z axis
+    speed = np.array([across, across, abs(float(slip[2]))])
+    return np.asarray((drag * speed * slip) @ axes)

@@ -21,6 +21,8 @@ from tethertest.solver.statics.chain import ChainLoad, ChainState
 from tethertest.solver.statics.rest import rest_state
 from tethertest.solver.terms import axial_stiffness, drag_coefficients, spatial, steady_wind
 
+#: cells of the chain that gives the tension at rest
+_REST_CELLS = 50
 #: largest relative difference between a stated force at the top and the one at rest that counts as agreement
 _AGREEMENT = 5e-3
 #: cosine between neighbouring cells below which the chain is folded over
@@ -82,6 +84,15 @@ def rest_chain(scene: Scene, cells: int) -> RestChain:
         end_force=frozen(end_force),
         lift=frozen(lift),
     )
+
+
+def rest_tension(scene: Scene) -> FloatArray:
+    """Return the tension at rest (g,) [N] at the gauges of a scene."""
+    rest = rest_chain(scene, _REST_CELLS)
+    ends = [float(np.linalg.norm(force)) for force in (rest.start_force, rest.end_force)]
+    places = np.concatenate([[0.0], (np.arange(_REST_CELLS) + 0.5) / _REST_CELLS, [1.0]])
+    along = np.concatenate([ends[:1], rest.tension, ends[1:]])
+    return np.asarray(np.interp(np.asarray(scene.output.gauges), places, along))
 
 
 def chain_load(scene: Scene, cells: int) -> ChainLoad:

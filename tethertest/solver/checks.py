@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import is_dataclass
-from typing import Annotated, Any, Literal, get_args, get_origin
+from functools import cache
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from tethertest.errors import DataError
-from tethertest.readers.config_structure import field_types
 from tethertest.records.arrays import FloatArray
 from tethertest.records.quantity import SI
 from tethertest.records.scene import MeasuredMotion, Scene, WindSeries
@@ -44,8 +44,13 @@ def check_scene(scene: Scene, measured: MeasuredMotion | None, wind: WindSeries 
         _check_series("the wind series", wind.time, wind.velocity, scene.output.duration)
 
 
+@cache
+def _hints(kind: Any) -> dict[str, Any]:
+    return get_type_hints(kind, include_extras=True)
+
+
 def _problems(kind: Any, record: Any, path: str) -> Iterator[tuple[str, str, str]]:
-    for name, hint in field_types(kind).items():
+    for name, hint in _hints(kind).items():
         yield from _checked(hint, getattr(record, name), f"{path}{name}", name)
 
 

@@ -31,6 +31,28 @@ class Solution:
     fields: dict[str, FloatArray] = a_field(default_factory=dict)
 
 
+def widened(field: Field, time: FloatArray, gauges: FloatArray, tension: FloatArray) -> Field:
+    """Return a field whose stations nearest to the gauges reach as far as the gauges do.
+
+    Parameters
+    ----------
+    field : Field
+    time : (n,) float64
+        [s].
+    gauges : (g,) float64
+        Fractions of the length from the bottom.
+    tension : (n, g) float64
+        [N].
+    """
+    bins = np.clip(np.searchsorted(field.time, time, "right") - 1, 0, field.time.size - 1)
+    maximum, minimum = field.maximum.copy(), field.minimum.copy()
+    for g, gauge in enumerate(gauges):
+        station = int(np.argmin(np.abs(field.position - gauge)))
+        np.maximum.at(maximum[:, station], bins, tension[:, g])
+        np.minimum.at(minimum[:, station], bins, tension[:, g])
+    return Field(field.time, field.position, maximum, minimum)
+
+
 def field_of_rows(time: FloatArray, position: FloatArray, tension: FloatArray) -> Field:
     """Return the extremes of a tension known at every row; neighbouring bins share their edge.
 

@@ -141,3 +141,26 @@ def test_what_was_built_in_python_is_held_to_the_same_bounds(
     with pytest.raises(DataError, match=words) as caught:
         solve(replace(SCENE, **change), **options)
     assert caught.value.remedy
+
+
+def test_the_field_reaches_as_far_as_the_extrapolated_gauges() -> None:
+    answer = solve(INCLINED)
+    assert "extrapolated" in answer.scheme
+    for g, station in ((0, 0), (2, -1)):
+        assert np.max(answer.field.maximum[:, station]) >= np.max(answer.tension[:, g])
+        assert np.min(answer.field.minimum[:, station]) <= np.min(answer.tension[:, g])
+
+
+def test_a_sudden_start_at_native_times_is_native() -> None:
+    sudden = replace(INCLINED, bottom=Bottom("harmonic", "vertical", amplitude=0.005, frequency=0.5))
+    answer = solve(sudden, native_times=True, finest=80)
+    assert answer.time[1] == pytest.approx(answer.time_step)
+
+
+def test_a_march_without_end_is_refused_with_its_steps() -> None:
+    short = replace(SCENE.cable, length=0.001, axial_damping_time=1e-4)
+    long = replace(INCLINED, cable=short, geometry=Geometry("ends", top=(7e-4, 6e-4)))
+    long = replace(long, output=Output(36000.0, 10.0, (0.0, 1.0)), bottom=replace(HEAVE, amplitude=1e-6))
+    with pytest.raises(DataError, match="even 10 cells need") as caught:
+        solve(long, fidelity="nonlinear")
+    assert "duration" in caught.value.remedy

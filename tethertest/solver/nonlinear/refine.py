@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Status
 from tethertest.solver.motion import velocity
@@ -19,7 +20,7 @@ from tethertest.solver.norms import finished, goes_slack
 from tethertest.solver.numbers import SceneNumbers
 from tethertest.solver.problem import Problem, Refined
 from tethertest.solver.resample import resampled
-from tethertest.solver.solution import Solution
+from tethertest.solver.solution import Solution, widened
 
 TAUT, VISCOUS = "leapfrog on the material mesh", "leapfrog on the material mesh, limited viscosity"
 EXTRAPOLATED = "leapfrog on the material mesh, extrapolated from two meshes"
@@ -110,17 +111,22 @@ def _refine_taut(problem: Problem, meshes: list[int]) -> Refined | None:
             if error <= problem.tolerance:
                 status = Status.OK
                 break
+    if not runs:
+        raise _too_long(problem, meshes[0])
     used = meshes[len(runs) - 1]
     if len(runs) < 3:
         status = Status.STEP_LIMIT
         error = differences[-1] if differences else np.inf
-    if sudden or not extrapolated:
-        return Refined(runs[-1], "nonlinear", TAUT, used, error, status)
     if problem.native_times:
         run = run_chain(problem.scene, used, viscous=False, courant=courant, measured=problem.measured,
                         wind=problem.wind, native_times=True)  # fmt: skip
         return Refined(run, "nonlinear", TAUT, used, error, status)
-    return Refined(extrapolated[-1], "nonlinear", EXTRAPOLATED, used, error, status)
+    if sudden or not extrapolated:
+        return Refined(runs[-1], "nonlinear", TAUT, used, error, status)
+    best = extrapolated[-1]
+    gauges = np.asarray(problem.scene.output.gauges, dtype=np.float64)
+    best = replace(best, field=widened(best.field, best.time, gauges, best.tension))
+    return Refined(best, "nonlinear", EXTRAPOLATED, used, error, status)
 
 
 def _refine_viscous(problem: Problem, meshes: list[int]) -> Refined:
@@ -148,7 +154,7 @@ def _refine_viscous(problem: Problem, meshes: list[int]) -> Refined:
                 break
         before = solution
     if solution is None:
-        solution, status = _march_viscous(problem, meshes[0]), Status.STEP_LIMIT
+        raise _too_long(problem, meshes[0])
     if not differences and status is Status.TOLERANCE_NOT_MET:
         status = Status.STEP_LIMIT
     elif status is Status.TOLERANCE_NOT_MET and goes_slack(solution):
@@ -157,6 +163,15 @@ def _refine_viscous(problem: Problem, meshes: list[int]) -> Refined:
         solution = run_chain(problem.scene, used, measured=problem.measured, wind=problem.wind,
                              native_times=True)  # fmt: skip
     return Refined(solution, "nonlinear", VISCOUS, used, error, _ended(solution, status))
+
+
+def _too_long(problem: Problem, cells: int) -> DataError:
+    case = chain_case(problem.scene, cells, measured=problem.measured, wind=problem.wind)
+    message = (
+        f"scene {problem.scene.name!r}: even {cells} cells need {case.steps:.2g} steps of "
+        f"{case.time_step:.2g} s, more than {problem.node_steps:.2g} cells times steps"
+    )
+    return DataError(message, "shorten [output] duration, or use --fidelity catenary or linear")
 
 
 def _affordable(problem: Problem, meshes: list[int], *, viscous: bool) -> Iterator[int]:

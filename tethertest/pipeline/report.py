@@ -33,7 +33,7 @@ from tethertest.replay import (
     variations,
 )
 from tethertest.similitude import similarity
-from tethertest.solver import MESHES, solve
+from tethertest.solver import FIRST_MESH, solve
 from tethertest.spectra import find_events, find_lines, fit_drive
 
 #: the sensor that measures the bottom motion
@@ -154,7 +154,7 @@ def _replay(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> _Repl
     channels = replayed_channels(response, motion.start, measured.channels)
     moved: tuple[tuple[Channel, ...], ...] = ()
     if drive is not None:
-        coarser = max(MESHES[0], response.cells // 2)
+        coarser = max(FIRST_MESH, response.cells // 2)
         varied = variations(run, motion, measured.channels, coarser, response.fidelity)
         moved = tuple(variation.channels for variation in varied)
     return _Replay(scene, motion, response, channels, moved)

@@ -14,7 +14,9 @@ class Status(Enum):
     """Outcome of a solve; the text is advice."""
 
     OK = "Solved within the stated error."
-    UNJUDGED = "Solved on one mesh alone: its error is not known. Leave out the mesh to have it estimated."
+    UNJUDGED = (
+        "Solved, but its error is not known; leave out --cells, or shorten the scene, to have it estimated."
+    )
     TOLERANCE_NOT_MET = "The stated error is above the tolerance asked for; allow more cells or ask for less."
     NOT_SETTLED = (
         "The cable goes slack and its answer does not settle as the mesh is refined; give the scene air drag "

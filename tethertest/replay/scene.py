@@ -8,7 +8,7 @@ from tethertest.errors import DataError
 from tethertest.records.rig import Rig
 from tethertest.records.run import Run
 from tethertest.records.scene import Accuracy, Bottom, Geometry, Output, Scene, Top
-from tethertest.solver import MESHES
+from tethertest.solver import FIRST_MESH
 from tethertest.solver.nonlinear.chain_march import chain_case
 
 #: relative error that the replay asks of the solver
@@ -63,7 +63,7 @@ def run_scene(run: Run, duration: float, *, rig: Rig | None = None) -> Scene:
         gravity=used.gravity,
     )
     still = replace(scene, bottom=Bottom("fixed"))  # the motion itself is not known yet
-    steps = chain_case(still, MESHES[0]).steps
+    steps = chain_case(still, FIRST_MESH).steps
     if steps > MOST_STEPS:
         message = f"a replay of {duration:.4g} s would need {steps:.2g} steps, more than {MOST_STEPS:.2g}"
         remedy = "correct length, mass_per_length and axial_stiffness of the rig's cable"

@@ -10,7 +10,7 @@ from tethertest.errors import DataError
 from tethertest.records.response import Status
 from tethertest.solver.linear.refine import moves_along, refine_linear
 from tethertest.solver.nonlinear.chain_march import chain_case, run_chain
-from tethertest.solver.nonlinear.refine import FIRST_MESH, refine_nonlinear
+from tethertest.solver.nonlinear.refine import FIRST_MESH, is_affordable, refine_nonlinear
 from tethertest.solver.norms import goes_slack
 from tethertest.solver.numbers import SceneNumbers
 from tethertest.solver.problem import Problem, Refined
@@ -57,15 +57,20 @@ def choose(problem: Problem, numbers: SceneNumbers) -> Chosen:
 def judged_linear(problem: Problem, numbers: SceneNumbers, refined: Refined) -> Chosen:
     """Return a linear solution with its distance from the nonlinear model on coarse meshes."""
     scene = problem.scene
-    if scene.geometry.kind in {"vertical", "straight"} and moves_along(problem):
-        error = _drag_along(problem) if scene.air is not None else 0.0
-        warnings = ("the linear model leaves out air drag",) if scene.air is not None else ()
-        return Chosen(refined, error, warnings)
+    warnings = ("the linear model leaves out air drag",) if scene.air is not None else ()
+    upright = scene.geometry.kind in {"vertical", "straight"} and moves_along(problem)
+    if upright and scene.air is None:
+        return Chosen(refined, 0.0)
+    if not is_affordable(problem, FIRST_MESH):
+        warnings = (*warnings, "the march that would tell the linear model's error takes too long")
+        return Chosen(replace(refined, status=Status.UNJUDGED), None, warnings)
+    if upright:
+        return Chosen(refined, _drag_along(problem), warnings)
     coarse = replace(problem, finest=_JUDGING_MESH, native_times=False, cells=None)
     nonlinear = refine_nonlinear(coarse, numbers)
     rows, found = refined.solution, nonlinear.solution
     read = [np.interp(rows.time, found.time, series) for series in found.tension.T]
-    return Chosen(refined, problem.apart(rows.tension, np.column_stack(read)))
+    return Chosen(refined, problem.apart(rows.tension, np.column_stack(read)), warnings)
 
 
 def judged_catenary(problem: Problem) -> Chosen:
@@ -93,6 +98,8 @@ def _try_waves(problem: Problem, numbers: SceneNumbers) -> Chosen | None:
     if problem.sudden and scene.cable.axial_damping_time:
         return None
     if scene.top.drag_area is not None and any(scene.top.drag_area) and scene.air is not None:
+        return None
+    if not is_affordable(problem, FIRST_MESH):
         return None
     quick = run_chain(scene, FIRST_MESH, measured=problem.measured)
     if goes_slack(quick):

@@ -15,18 +15,14 @@ from tethertest.records.scene import MeasuredMotion, Scene, WindSeries
 from tethertest.solver.checks import check_scene
 from tethertest.solver.choice import Chosen, choose, judged_catenary, judged_linear
 from tethertest.solver.linear.refine import LinearScheme, refine_linear
-from tethertest.solver.nonlinear.chain_march import chain_case
-from tethertest.solver.nonlinear.refine import FIRST_MESH, refine_nonlinear
+from tethertest.solver.nonlinear.refine import refine_nonlinear
 from tethertest.solver.norms import goes_slack
 from tethertest.solver.numbers import SceneNumbers, scene_numbers
 from tethertest.solver.problem import Problem
-from tethertest.solver.spread import Spread, sideways_error, slack_spread
+from tethertest.solver.spread import Spread, slack_spread
 from tethertest.solver.statics.equilibrium import rest_tension
 
 Fidelity = Literal["auto", "catenary", "linear", "nonlinear"]
-
-#: meshes that a refinement usually goes through, coarse to fine
-MESHES = (10, 20, 40, 80, 160)
 
 
 def solve(
@@ -102,8 +98,8 @@ def solve(
         warnings += _slack_warnings(scene)
         if spread and cells is None and refined.status is not Status.NOT_FINITE:
             members = slack_spread(problem, refined.cells)
-            if len(chain_case(scene, FIRST_MESH, measured=measured, wind=wind).axes) == 1:
-                model_error = sideways_error(problem, refined.cells)
+            if members.upright:
+                model_error = members.bows
                 warnings.append(_sideways_warning(model_error))
     chosen = replace(chosen, model_error=model_error, warnings=tuple(warnings))
     return _response(problem, numbers, chosen, members, began)

@@ -164,3 +164,21 @@ def test_a_march_without_end_is_refused_with_its_steps() -> None:
     with pytest.raises(DataError, match="even 10 cells need") as caught:
         solve(long, fidelity="nonlinear")
     assert "duration" in caught.value.remedy
+
+
+def test_an_upright_march_without_end_is_neither_begun_nor_called_judged() -> None:
+    short = replace(SCENE.cable, length=0.001, axial_damping_time=1e-4)
+    endless = replace(SCENE, cable=short, air=AIR, output=Output(36000.0, 2.0, (0.0, 1.0)))
+    endless = replace(endless, bottom=replace(HEAVE, amplitude=1e-7))
+    linear = solve(endless, fidelity="linear")
+    assert linear.status is Status.UNJUDGED
+    assert linear.error.model is None
+    assert any("takes too long" in warning for warning in linear.warnings)
+    with pytest.raises(DataError, match="even 10 cells need"):
+        solve(endless, fidelity="nonlinear")
+
+
+def test_a_curved_linear_cable_warns_of_the_drag_that_it_leaves_out() -> None:
+    level = replace(SCENE, geometry=Geometry("shallow", tension=50.0), air=AIR)
+    answer = solve(replace(level, bottom=replace(HEAVE, direction="tangent")), fidelity="linear")
+    assert "the linear model leaves out air drag" in answer.warnings

@@ -174,10 +174,15 @@ def _too_long(problem: Problem, cells: int) -> DataError:
     return DataError(message, "shorten [output] duration, or use --fidelity catenary or linear")
 
 
+def is_affordable(problem: Problem, cells: int, *, viscous: bool = True) -> bool:
+    """Return whether a march on so many cells stays within the problem's cells times steps."""
+    case = chain_case(problem.scene, cells, viscous=viscous, measured=problem.measured, wind=problem.wind)
+    return cells * case.steps <= problem.node_steps
+
+
 def _affordable(problem: Problem, meshes: list[int], *, viscous: bool) -> Iterator[int]:
     for cells in meshes:
-        case = chain_case(problem.scene, cells, viscous=viscous, measured=problem.measured, wind=problem.wind)
-        if cells * case.steps > problem.node_steps:
+        if not is_affordable(problem, cells, viscous=viscous):
             return
         yield cells
 

@@ -192,7 +192,8 @@ def test_bad_input_is_one_message_with_a_remedy_and_nothing_written(
 def test_two_readers_that_claim_one_file_are_named(
     run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from tethertest.readers import catman, lvm, registry
+    from tethertest.readers import registry
+    from tethertest.readers.formats import catman, lvm
 
     monkeypatch.setattr(catman, "sniff", lvm.sniff)
     assert registry.READERS

@@ -162,7 +162,7 @@ def test_a_series_of_the_scene_is_not_written_over(
 
 def test_the_scene_is_read_before_it_is_spoiled(scene: Path) -> None:
     from tethertest.readers import load_scene
-    from tethertest.readers.scene_series import read_motion, read_wind
+    from tethertest.readers.scenes.series import read_motion, read_wind
 
     read = load_scene(scene)
     motion, wind = read_motion(read), read_wind(read)

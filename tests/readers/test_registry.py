@@ -11,18 +11,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import tethertest.readers
 from tethertest.errors import FileFormatError
-from tethertest.readers import READERS, identify, read_log, registry
-from tethertest.readers.text import Head, read_head
+from tethertest.readers import READERS, formats, identify, read_log, registry
+from tethertest.readers.text.document import Head, read_head
 
 LVM_HEAD = "LabVIEW Measurement\t\nWriter_Version\t2\n"
 
 
 def test_every_module_with_a_name_is_registered_once():
     modules = [
-        importlib.import_module(f"tethertest.readers.{found.name}")
-        for found in pkgutil.iter_modules(tethertest.readers.__path__)
+        importlib.import_module(f"tethertest.readers.formats.{found.name}")
+        for found in pkgutil.iter_modules(formats.__path__)
     ]
     named = {module.NAME for module in modules if hasattr(module, "NAME")}
     registered = [reader.NAME for reader in READERS]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 import typer
 
 if TYPE_CHECKING:
-    from tethertest.readers.config_schema import FileKind
+    from tethertest.readers.config.schema import FileKind
 
 
 class SchemaKind(StrEnum):

@@ -9,9 +9,9 @@ from typing import cast, get_args
 
 from tethertest.errors import DataError
 from tethertest.readers import load_scene
-from tethertest.readers.config_problems import suggestion
-from tethertest.readers.scene_output import size_problems
-from tethertest.readers.scene_series import read_motion, read_wind
+from tethertest.readers.config.problems import suggestion
+from tethertest.readers.scenes.output import size_problems
+from tethertest.readers.scenes.series import read_motion, read_wind
 from tethertest.records.response import Response
 from tethertest.records.scene import FieldName, Scene
 from tethertest.solver import Fidelity, LinearScheme, solve

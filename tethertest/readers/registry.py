@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from tethertest.errors import FileFormatError
-from tethertest.readers import (
+from tethertest.readers.formats import (
     catman,
     delimited,
     enlight_peaks,
@@ -17,8 +17,8 @@ from tethertest.readers import (
     lvm,
     tdms,
 )
-from tethertest.readers.encoding import detect_encoding
-from tethertest.readers.text import Head, nul_bytes, read_head
+from tethertest.readers.text.document import Head, nul_bytes, read_head
+from tethertest.readers.text.encoding import detect_encoding
 from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
 

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from tethertest.errors import DataError
 from tethertest.readers import load_scene
-from tethertest.readers.scene_series import read_motion, read_wind
+from tethertest.readers.scenes.series import read_motion, read_wind
 from tethertest.records.cable import Air, Cable
 from tethertest.records.scene import Bottom, Geometry, MeasuredMotion, Output, Scene, Top, WindSeries
 from tethertest.solver.statics.catenary_shape import ElasticCatenary

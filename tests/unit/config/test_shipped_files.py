@@ -7,8 +7,8 @@ from typing import get_args
 import pytest
 
 from tethertest.readers import json_schema, load_prototype, load_prototype_of, load_rig, load_scene
-from tethertest.readers.config_schema import FileKind
-from tethertest.readers.config_toml import read_document
+from tethertest.readers.config.schema import FileKind
+from tethertest.readers.config.toml import read_document
 
 RIGS = Path(__file__).parents[3] / "rigs"
 FILES = sorted(RIGS.rglob("*.toml"))

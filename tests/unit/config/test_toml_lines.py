@@ -4,7 +4,7 @@ import tomllib
 
 import pytest
 
-from tethertest.readers.config_toml import read_document
+from tethertest.readers.config.toml import read_document
 
 TEXT = '''\
 # a comment with = and [brackets]

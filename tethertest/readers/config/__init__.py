@@ -1,0 +1,1 @@
+"""Run, rig, prototype and scene files into records, with errors that name file, line and key."""

@@ -1,0 +1,202 @@
+"""LabVIEW measurement files (text): ``LabVIEW Measurement``, keys, then one or more segments.
+
+References
+----------
+National Instruments, "Specification for the LabVIEW Measurement File (.lvm)".
+"""
+
+from __future__ import annotations
+
+import datetime as dt
+from pathlib import Path
+
+import numpy as np
+
+from tethertest.errors import FileFormatError
+from tethertest.readers.channels import raw_channel, unique_names, with_units
+from tethertest.readers.formats.lvm_segments import Segment, find_segments
+from tethertest.readers.text.document import Document, Head, file_sha256, read_document
+from tethertest.readers.text.stamps import parse_stamps, time_zone_of
+from tethertest.readers.text.table import check_widths, find_rows, read_columns
+from tethertest.records.arrays import FloatArray
+from tethertest.records.channel import RawChannel, RawLog
+from tethertest.records.run import Log
+
+NAME = "lvm"
+_SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";"}
+
+
+def sniff(head: Head) -> str | None:
+    """Claim files whose first line is ``LabVIEW Measurement``."""
+    if head.lines and head.lines[0].startswith("LabVIEW Measurement"):
+        return "the first line is 'LabVIEW Measurement'"
+    return None
+
+
+def read(path: Path, settings: Log | None = None) -> RawLog:
+    """Read a LabVIEW measurement file.
+
+    Parameters
+    ----------
+    path : Path
+        The log, plain or in gzip or zip.
+    settings : Log, optional
+        Settings of the run file: encoding, decimal, separator, date_order, time_zone, units.
+
+    Returns
+    -------
+    RawLog
+        Each segment starts at its own stamp; text events of the comment column are remarks.
+
+    Raises
+    ------
+    FileFormatError
+        The header is cut, a segment has fewer rows than it states, or a row is cut.
+    """
+    document = read_document(path, settings.encoding if settings is not None else None)
+    header, separator, decimal = _file_header(document, settings)
+    segments = find_segments(document, separator, header)
+    zone = time_zone_of(settings.time_zone if settings is not None else None, path)
+    order = settings.date_order if settings is not None else None
+    first = segments[0]
+    names, remarks = unique_names(first.names)
+    notes = list(remarks)
+    start, date_order = None, ""
+    pieces: dict[int, list[tuple[FloatArray, FloatArray]]] = {column: [] for column in range(len(names))}
+    for number, segment in enumerate(segments, start=1):
+        if segment.names != first.names:
+            message = f"segment {number} has the channels {segment.names}, the first one has {first.names}"
+            raise FileFormatError(message, "split the log at this line", path=path, line=segment.names_line)
+        starts = [_start(path, segment, channel, order, zone) for channel in range(len(names))]
+        if start is None and starts[0] is not None:
+            start, date_order = starts[0]
+        columns, events = _read_segment(document, segment, separator, decimal)
+        notes.extend(events)
+        for channel, (time, values) in enumerate(columns):
+            began = starts[channel]
+            shift = (began[0] - start).total_seconds() if began is not None and start is not None else 0.0
+            pieces[channel].append((time + shift, values))
+    if len(segments) > 1:
+        notes.append(
+            f"the file holds {len(segments)} segments, each with its own start; between them is a gap"
+        )
+    channels = [_joined(name, first.units[i], pieces[i]) for i, name in enumerate(names)]
+    notes.extend(
+        f"channel {channel.name!r} has no samples" for channel in channels if not channel.values.size
+    )
+    if not any(channel.values.size for channel in channels):
+        message = "the log has a header but no data rows"
+        raise FileFormatError(message, "choose another file", path=path, line=first.names_line)
+    interval = first.intervals[0]
+    return RawLog(
+        path=path,
+        format=NAME,
+        sha256=file_sha256(path),
+        start=start,
+        channels=with_units(path, channels, settings),
+        encoding=document.encoding,
+        decimal=decimal,
+        separator=separator,
+        date_order=date_order,
+        header_line=first.names_line,
+        rate=1.0 / interval if interval > 0 else None,
+        remarks=tuple(notes),
+    )
+
+
+def _file_header(document: Document, settings: Log | None) -> tuple[dict[str, str], str, str]:
+    """Return the keys of the file header, the separator and the decimal sign."""
+    lines = document.lines(200)
+    separator = next(
+        (line[len(key)] for line in lines for key in ("Writer_Version",) if line.startswith(key)), "\t"
+    )
+    keys: dict[str, str] = {}
+    for line in lines:
+        if line.startswith("***End_of_Header***"):
+            break
+        key, _, value = line.partition(separator)
+        keys[key.strip()] = value.strip(separator + " ")
+    else:
+        message = "the file header has no end"
+        raise FileFormatError(
+            message, "copy the whole file from the logger again", path=document.path, line=1
+        )
+    separator = _SEPARATORS.get(keys.get("Separator", "").lower(), separator)
+    decimal = keys.get("Decimal_Separator", "")
+    if settings is not None and settings.separator is not None:
+        separator = _SEPARATORS.get(settings.separator.lower(), settings.separator)
+    if settings is not None and settings.decimal is not None:
+        decimal = settings.decimal
+    return keys, separator, decimal if decimal in {".", ","} else _decimal_by_content(document, separator)
+
+
+def _decimal_by_content(document: Document, separator: str) -> str:
+    """Find the decimal sign in the last lines: the header's own times may use another one."""
+    if separator == ",":
+        return "."
+    cells = [cell for line in document.body.split(b"\n")[-50:] for cell in line.split(separator.encode())]
+    numbers = [cell.strip() for cell in cells if cell.strip()[:1] in b"+-0123456789" and cell.strip()]
+    return "," if sum(b"," in cell for cell in numbers) > sum(b"." in cell for cell in numbers) else "."
+
+
+def _start(
+    path: Path, segment: Segment, channel: int, order: str | None, zone: dt.tzinfo | None
+) -> tuple[dt.datetime, str] | None:
+    text = segment.starts[channel]
+    if not text:
+        return None
+    stamps = parse_stamps([text], path, [segment.first_line], order)
+    start = stamps.start(zone)
+    return None if start is None else (start, stamps.date_order)
+
+
+def _read_segment(
+    document: Document, segment: Segment, separator: str, decimal: str
+) -> tuple[list[tuple[FloatArray, FloatArray]], list[str]]:
+    """Return time and values of every channel, and the text events."""
+    count = len(segment.names)
+    if not segment.rows.strip():
+        return [(np.empty(0), np.empty(0)) for _ in range(count)], []
+    path, width = document.path, segment.width
+    rows = find_rows(path, segment.rows, segment.first_line, separator, decimal)
+    check_widths(rows, width - 1 if segment.comment else width, width)
+    stated = max(segment.samples)
+    if segment.counts_rows and len(rows.lines) < stated:
+        message = f"the segment states {stated} samples and has {len(rows.lines)} rows"
+        remedy = "copy the whole file from the logger again"
+        raise FileFormatError(message, remedy, path=path, line=int(rows.lines[-1]))
+    names = [*(segment.column_names), "Comment"][:width]
+    comment = width - 1
+    texts = {comment} if segment.comment else set()
+    unused = {0} if segment.x_columns == "no" else set()
+    columns = read_columns(rows, width, names, texts=texts, unused=unused)
+    events = [
+        f"line {rows.lines[row]}: {cell.strip()}"
+        for row, cell in enumerate(columns.texts.get(comment, []))
+        if cell.strip()
+    ]
+    result = []
+    for channel in range(count):
+        place = 2 * channel if segment.x_columns == "multi" else 0
+        values = columns.numbers[place + 1 if segment.x_columns == "multi" else channel + 1]
+        size = _filled_size(values, segment.samples[channel])
+        written = columns.numbers.get(place)
+        time = segment.time(channel, size) if written is None else written[:size]
+        if np.any(np.isnan(time)):
+            line = int(rows.lines[np.argmax(np.isnan(time))])
+            message = "the row has no X value"
+            raise FileFormatError(message, "export the log again", path=path, line=line)
+        result.append((time, values[:size]))
+    return result, [*columns.remarks, *events]
+
+
+def _filled_size(values: FloatArray, stated: int) -> int:
+    """Return how many rows belong to a channel: a shorter one leaves its last cells blank."""
+    if stated < len(values) and bool(np.all(np.isnan(values[stated:]))):
+        return stated
+    return len(values)
+
+
+def _joined(name: str, unit: str, pieces: list[tuple[FloatArray, FloatArray]]) -> RawChannel:
+    time = np.concatenate([time for time, _ in pieces])
+    return raw_channel(name, unit, time, np.concatenate([values for _, values in pieces]))

@@ -1,0 +1,1 @@
+"""The parts of a scene file, and the measured series it names."""

@@ -1,0 +1,1 @@
+"""Text logs: bytes, encoding, layout, columns, stamps."""

@@ -1,0 +1,238 @@
+"""Where the columns of an unknown text log are: separator, decimal sign, names, units and first data row."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from tethertest.errors import FileFormatError
+from tethertest.readers.text.cells import (
+    bare_unit,
+    column_kind,
+    is_datum,
+    is_units_row,
+    split_row,
+    split_unit,
+)
+from tethertest.readers.text.document import Document
+from tethertest.readers.text.table import MISSING_TOKENS, SPACES, is_number
+from tethertest.records.run import Log
+
+_SEPARATORS: Final = ("\t", ";", ",", "|", SPACES)
+_SPELLINGS: Final = {
+    "tab": "\t", "\\t": "\t", "comma": ",", "semicolon": ";", "space": SPACES, "spaces": SPACES, " ": SPACES,
+}  # fmt: skip
+_COMMENT: Final = ("#", "%", "//")
+_SAMPLE_LINES: Final = 600
+#: a line that spreadsheets write and read
+_DIRECTIVE = re.compile(r"\s*sep=(.)\s*", re.IGNORECASE)
+#: a group of three digits after a comma: a decimal part or a thousand
+_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
+_BOTH_SIGNS = re.compile(r"[-+]?\d{1,3}(?:([.,])\d{3})+(?!\1)[.,]\d+")
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One row of the beginning of the file, split."""
+
+    number: int  #: from 1
+    cells: list[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What was concluded from the content of a text log."""
+
+    separator: str
+    decimal: str
+    header_line: int | None
+    first_line: int  #: of the data
+    width: int  #: columns that have a name
+    names: tuple[str, ...]  #: without units
+    units: tuple[str, ...]
+    kinds: tuple[str, ...]  #: of the columns, see `column_kind`
+    comments: tuple[str, ...]  #: comment lines above the data, without their sign
+
+
+def find_layout(document: Document, settings: Log | None) -> Layout:
+    """Find the layout by content; settings of the run file come first.
+
+    Raises
+    ------
+    FileFormatError
+        There are no columns, the header does not fit the rows, or a decimal sign can be read two ways.
+    """
+    path = document.path
+    skip = settings.skip_rows if settings is not None else 0
+    directive = _DIRECTIVE.fullmatch(document.lines(1)[0])
+    if directive:
+        skip = max(skip, 1)
+    plain: list[tuple[int, str]] = []
+    comments: list[tuple[int, str]] = []
+    for number, text in enumerate(document.lines(skip + _SAMPLE_LINES), start=1):
+        if number <= skip or not text.strip():
+            continue
+        if text.lstrip().startswith(_COMMENT):
+            comments.append((number, text.lstrip().lstrip("#%/").strip()))
+        else:
+            plain.append((number, text))
+    wanted = settings.separator if settings is not None else None
+    separator, lines, width = _find_separator(path, plain, wanted or (directive and directive[1]))
+    first = _first_data_row(path, lines, width)
+    data = [line for line in lines[first:] if abs(len(line.cells) - width) <= 1]
+    decimal = _find_decimal(document, data, separator, settings)
+    header_line, names, units = _find_names(path, lines[:first], comments, separator, width, lines[first])
+    if names and not names[-1] and len(names) > 1:
+        names, units = names[:-1], units[:-1]
+    kinds = tuple(
+        column_kind([line.cells[column] for line in data[:200] if column < len(line.cells)])
+        for column in range(len(names))
+    )
+    texts = tuple(text for _, text in comments)
+    return Layout(
+        separator, decimal, header_line, lines[first].number, len(names), names, units, kinds, texts
+    )
+
+
+def _find_separator(
+    path: Path, plain: list[tuple[int, str]], wanted: str | None
+) -> tuple[str, list[Line], int]:
+    candidates = _SEPARATORS if wanted is None else (_SPELLINGS.get(wanted, wanted),)
+    best: tuple[float, str, list[Line], int] | None = None
+    for separator in candidates:
+        lines = [Line(number, split_row(text, separator)) for number, text in plain]
+        whole = lines[:-1] if len(lines) > 4 else lines
+        tail = whole[-min(100, max(2, len(whole) // 2)) :]
+        widths = Counter(len(line.cells) for line in tail)
+        everywhere = Counter(len(line.cells) for line in lines)
+        width = max(widths, key=lambda key: (widths[key], everywhere[key], key), default=0)
+        if width < 2:
+            continue
+        cells = [cell for line in tail for cell in line.cells if cell]
+        score = widths[width] / len(tail) * sum(map(is_datum, cells)) / max(len(cells), 1)
+        if best is None or score > best[0] + 1e-9:
+            best = (score, separator, lines, width)
+    if best is None or best[0] < 0.2:
+        message = (
+            "found no rows of numbers, at most a header"
+            if wanted is None
+            else f"found no columns separated by {wanted!r}"
+        )
+        remedy = "set separator, skip_rows or encoding for this log in run.toml, or choose the right file"
+        raise FileFormatError(message, remedy, path=path)
+    return best[1:]
+
+
+def _first_data_row(path: Path, lines: list[Line], width: int) -> int:
+    """Return the index of the first row that looks like the rows further down."""
+    alike = [line for line in lines if len(line.cells) == width]
+    sample = alike[-100:]
+    numeric = [
+        column
+        for column in range(width)
+        if sum(_is_filled_datum(line.cells[column]) for line in sample) * 2 >= len(sample)
+    ]
+    for index, line in enumerate(lines):
+        if abs(len(line.cells) - width) <= 1 and any(map(_is_filled_datum, line.cells)):
+            cells = [line.cells[column] for column in numeric if column < len(line.cells)]
+            if all(is_datum(cell) or cell.lower() in MISSING_TOKENS for cell in cells):
+                return index
+    message = "the log has a header but no data rows"
+    raise FileFormatError(
+        message, "the logger was stopped before its first sample; choose another file", path=path
+    )
+
+
+def _is_filled_datum(cell: str) -> bool:
+    return bool(cell) and is_datum(cell)
+
+
+def _find_decimal(document: Document, data: list[Line], separator: str, settings: Log | None) -> str:
+    if settings is not None and settings.decimal is not None:
+        return settings.decimal
+    commas = points = decided = False
+    grouped: tuple[int, str] | None = None
+    for line in data:
+        for cell in line.cells:
+            if _BOTH_SIGNS.fullmatch(cell):
+                message = f"found {cell!r}: a number with thousands separators"
+                raise FileFormatError(
+                    message, "export the log without them", path=document.path, line=line.number
+                )
+            if "," in cell and (is_number(cell, ",") or _GROUPED.fullmatch(cell)):
+                commas = True
+                grouped = grouped or (line.number, cell)
+                decided |= _GROUPED.fullmatch(cell) is None
+            points |= "." in cell and is_number(cell, ".")
+    if not commas or grouped is None:
+        return "."
+    if decided and not points:
+        return ","
+    if not points and _has_decimal_comma(document.body, separator):
+        return ","
+    number, cell = grouped
+    message = f"found {cell!r}: its comma may be a decimal sign or a thousands separator"
+    if points:
+        message = f"found {cell!r} beside numbers with a decimal point"
+    remedy = 'set decimal = "," for this log in run.toml if it is, or export without thousands separators'
+    raise FileFormatError(message, remedy, path=document.path, line=number)
+
+
+def _has_decimal_comma(body: bytes, separator: str) -> bool:
+    """Look through the whole log for a comma that can only be a decimal sign."""
+    edge = rb"[\s\"]" if separator == SPACES else b'[\n"' + re.escape(separator.encode()) + b"]"
+    return re.search(edge + rb"[-+]?(?:0,\d+|\d+,(?:\d{1,2}|\d{4,}))" + edge, body) is not None
+
+
+def _find_names(
+    path: Path, above: list[Line], comments: list[tuple[int, str]], separator: str, width: int, first: Line
+) -> tuple[int | None, tuple[str, ...], tuple[str, ...]]:
+    """Return the header line, the names and the units."""
+    header: list[Line] = []
+    for line in reversed(above):
+        if abs(len(line.cells) - width) > 1 or (header and line.number < header[0].number - 1):
+            break
+        header.insert(0, line)
+    if not header:
+        if above:
+            line = above[-1]
+            message = f"the header has {len(line.cells)} names, the rows have {len(first.cells)} columns"
+            remedy = "set separator, decimal or skip_rows for this log in run.toml"
+            raise FileFormatError(message, remedy, path=path, line=line.number)
+        return _names_without_header(comments, separator, width, first)
+    units: list[str] = [""] * width
+    if len(header) > 1 and is_units_row(header[-1].cells) and not is_units_row(header[-2].cells):
+        units = [bare_unit(cell) for cell in header.pop().cells]
+    row = header[-1]
+    if len(header) > 1 and width > 2:
+        message = f"found {len(header)} rows of names above the data"
+        remedy = "set skip_rows for this log in run.toml, so that one row of names and one of units remain"
+        raise FileFormatError(message, remedy, path=path, line=row.number)
+    if _is_filled_datum(row.cells[0]) or any(is_number(cell, ".") and "." in cell for cell in row.cells):
+        message = f"found {'; '.join(row.cells[:4])!r} above the data, which is neither names nor numbers"
+        remedy = "set skip_rows for this log in run.toml to leave out rows, or export the log again"
+        raise FileFormatError(message, remedy, path=path, line=row.number)
+    if len(row.cells) < width - 1 or (len(row.cells) == width - 1 and first.cells[-1]):
+        message = f"the header has {len(row.cells)} names, the rows have {width} columns"
+        raise FileFormatError(
+            message, "export the log again with a name per column", path=path, line=row.number
+        )
+    pairs = [split_unit(cell) for cell in row.cells]
+    units = [*units, *[""] * len(pairs)][: len(pairs)]
+    written = tuple(below or own for (_, own), below in zip(pairs, units, strict=True))
+    return row.number, tuple(name for name, _ in pairs), written
+
+
+def _names_without_header(
+    comments: list[tuple[int, str]], separator: str, width: int, first: Line
+) -> tuple[int | None, tuple[str, ...], tuple[str, ...]]:
+    """Take the names from the last comment above the data if it fits, else number the columns."""
+    for number, text in reversed(comments):
+        cells = split_row(text, separator)
+        if number < first.number and len(cells) == width:
+            pairs = [split_unit(cell) for cell in cells]
+            return number, tuple(name for name, _ in pairs), tuple(unit for _, unit in pairs)
+    return None, tuple(f"column {column + 1}" for column in range(width)), ("",) * width

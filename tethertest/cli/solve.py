@@ -107,6 +107,7 @@ def _print_summary(found: SolveSummary) -> None:
             ("numerical", found.error.numerical),
             ("model", found.error.model),
             ("spread", found.error.spread),
+            ("of the 20 ms peak", found.error.peak),
         )
         if value is not None
     ]

@@ -108,5 +108,6 @@ def _attributes(response: Response) -> dict[str, Any]:
         "error_numerical": error.numerical,
         "error_model": np.nan if error.model is None else error.model,
         "error_spread": np.nan if error.spread is None else error.spread,
+        "error_peak": np.nan if response.snap is None or response.snap.error is None else response.snap.error,
         "tethertest": __version__,
     }

@@ -7,11 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tethertest.records.arrays import FloatArray
 from tethertest.records.response import Response
-
-#: span of the running mean whose peak is quoted beside the raw one [s]
-_SMOOTHING = 0.02
+from tethertest.solver.nonlinear.snap_peak import SNAP_WINDOW, running_peaks
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +18,7 @@ class ErrorSummary:
     numerical: float | None
     model: float | None
     spread: float | None
+    peak: float | None  #: of the largest 20 ms mean, where the cable goes slack
     #: lowest and highest peak over the nominal one, of the members that tell the spread
     peak_range: tuple[float, float] | None
 
@@ -33,7 +31,8 @@ class GaugeSummary:
     minimum: float | None
     mean: float | None
     maximum: float | None
-    smoothed_maximum: float | None  #: of the running mean over 20 ms; null below 100 rows a second
+    #: of the running mean over 20 ms; null below 100 rows a second where the cable stays taut
+    smoothed_maximum: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +69,11 @@ def solve_summary(response: Response) -> SolveSummary:
         native_times=response.native_times,
         wall_s=response.wall,
         error=ErrorSummary(
-            _finite(error.numerical), _finite(error.model), _finite(error.spread), error.peak_range
+            _finite(error.numerical),
+            _finite(error.model),
+            _finite(error.spread),
+            None if response.snap is None else _finite(response.snap.error),
+            error.peak_range,
         ),
         gauges=tuple(
             GaugeSummary(
@@ -78,9 +81,9 @@ def solve_summary(response: Response) -> SolveSummary:
                 _finite(tension.min()),
                 _finite(tension.mean()),
                 _finite(tension.max()),
-                _smoothed_maximum(response, tension),
+                _smoothed_maximum(response, gauge),
             )
-            for at, tension in zip(response.gauges, response.tension.T, strict=True)
+            for gauge, (at, tension) in enumerate(zip(response.gauges, response.tension.T, strict=True))
         ),
         slack={f"{gauge:g}": spans for gauge, spans in response.slack.items()},
         warnings=response.warnings,
@@ -97,13 +100,15 @@ def solve_schema() -> dict[str, Any]:
     return {"$schema": dialect, **schema, "title": "tethertest solve --json"}
 
 
-def _smoothed_maximum(response: Response, tension: FloatArray) -> float | None:
+def _smoothed_maximum(response: Response, gauge: int) -> float | None:
     """Return the largest running mean over 20 ms: the steadier figure where a cable snaps."""
-    rows = round(_SMOOTHING / float(response.time[1] - response.time[0])) if response.time.size > 1 else 0
-    if rows < 2 or tension.size < rows or not np.all(np.isfinite(tension)):
+    if response.snap is not None:
+        return _finite(float(response.snap.tension[gauge]))
+    time, tension = response.time, response.tension[:, gauge : gauge + 1]
+    rows = round(SNAP_WINDOW / float(time[1] - time[0])) if time.size > 1 else 0
+    if rows < 2 or len(tension) < rows or not np.all(np.isfinite(tension)):
         return None
-    sums = np.concatenate([[0.0], np.cumsum(tension)])
-    return float(np.max(sums[rows:] - sums[:-rows]) / rows)
+    return float(running_peaks(time, tension)[0])
 
 
 def _finite(value: float | None) -> float | None:

@@ -18,6 +18,10 @@ class Status(Enum):
         "Solved, but its error is not known; leave out --cells, or shorten the scene, to have it estimated."
     )
     TOLERANCE_NOT_MET = "The stated error is above the tolerance asked for; allow more cells or ask for less."
+    PEAKS_ONLY = (
+        "The cable goes slack: the peaks of the 20 ms mean of its tension are within the tolerance, its "
+        "course from instant to instant is not; quote these peaks."
+    )
     NOT_SETTLED = (
         "The cable goes slack and its answer does not settle as the mesh is refined; give the scene air drag "
         "and axial_damping_time, or quote the spread."
@@ -41,6 +45,17 @@ class ErrorBudget:
     spread: float | None = None  #: from unknown damping and straightness when slack
     #: lowest and highest peak over the nominal one, of the members that tell the spread
     peak_range: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SnapPeak:
+    """The largest running mean of a slack cable's tension: it settles where instants do not."""
+
+    window: float  #: averaging time [s]
+    tension: FloatArray  #: (g,) [N]
+    #: numerical, over the largest rise of a peak above rest; None for a cable without drag and damping, whose
+    #: peaks do not settle either
+    error: float | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,6 +93,7 @@ class Response:
     #: what chose the model and bounds it: frequency ratios, dynamic over static tension, strain
     numbers: dict[str, float] = a_field(default_factory=dict)
     native_times: bool = False  #: `time` holds the scheme's own levels, not t = k/rate
+    snap: SnapPeak | None = None  #: of the nonlinear model, where the cable goes slack
 
 
 @dataclass(frozen=True, slots=True)

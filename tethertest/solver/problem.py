@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tethertest.records.arrays import FloatArray
-from tethertest.records.response import Status
+from tethertest.records.response import SnapPeak, Status
 from tethertest.records.scene import MeasuredMotion, Scene, WindSeries
 from tethertest.solver.motion import velocity
 from tethertest.solver.norms import relative_difference
@@ -56,6 +56,7 @@ class Refined:
     cells: int
     error: float  #: NaN where one mesh alone was asked for
     status: Status
+    snap: SnapPeak | None = None  #: where the cable goes slack
 
     @property
     def good(self) -> bool:

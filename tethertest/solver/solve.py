@@ -190,6 +190,7 @@ def _response(
         warnings=chosen.warnings,
         fields={name: values[kept] for name, values in solution.fields.items()},
         native_times=problem.native_times,
+        snap=refined.snap,
         numbers={
             "drive_over_first_transverse": numbers.drive_over_first,
             "drive_over_first_axial": numbers.drive_over_axial,

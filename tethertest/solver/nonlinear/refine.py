@@ -13,9 +13,10 @@ import numpy as np
 
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
-from tethertest.records.response import Status
+from tethertest.records.response import SnapPeak, Status
 from tethertest.solver.motion import velocity
 from tethertest.solver.nonlinear.chain_march import chain_case, run_chain
+from tethertest.solver.nonlinear.snap_peak import SNAP_WINDOW, march_with_peaks, peak_error, peaks_apart
 from tethertest.solver.norms import finished, goes_slack
 from tethertest.solver.numbers import SceneNumbers
 from tethertest.solver.problem import Problem, Refined
@@ -78,7 +79,7 @@ def refine_nonlinear(problem: Problem, numbers: SceneNumbers) -> Refined:
     while 2 * meshes[-1] <= max(problem.finest, 8):
         meshes.append(2 * meshes[-1])
     taut = _refine_taut(problem, meshes)
-    return _refine_viscous(problem, meshes) if taut is None else taut
+    return _refine_viscous(problem, meshes, along=along) if taut is None else taut
 
 
 def _refine_taut(problem: Problem, meshes: list[int]) -> Refined | None:
@@ -129,40 +130,62 @@ def _refine_taut(problem: Problem, meshes: list[int]) -> Refined | None:
     return Refined(best, "nonlinear", EXTRAPOLATED, used, error, status)
 
 
-def _refine_viscous(problem: Problem, meshes: list[int]) -> Refined:
-    """Refine with viscosity."""
+def _refine_viscous(problem: Problem, meshes: list[int], *, along: bool) -> Refined:
+    """Refine with viscosity until the tension is within the tolerance or, slack, at least its peaks are."""
     differences: list[float] = []
-    before: Solution | None = None
+    peak_changes: list[float] = []
+    before: tuple[Solution, FloatArray] | None = None
     solution: Solution | None = None
+    peaks = np.empty(0)
+    of_peaks: float | None = None
     error, status, used = np.inf, Status.TOLERANCE_NOT_MET, meshes[0]
     for cells in _affordable(problem, meshes, viscous=True):
-        solution = _march_viscous(problem, cells)
+        solution, peaks = march_with_peaks(problem, cells)
         used = cells
         if not finished(solution):
             break
         if before is not None:
-            differences.append(problem.apart(before.tension, solution.tension))
+            rest = solution.tension[0] if problem.rest is None else problem.rest
+            differences.append(problem.apart(before[0].tension, solution.tension))
+            peak_changes.append(peaks_apart(before[1], peaks, rest))
+            of_peaks = peak_error(problem.scene, peak_changes, along=along)
             error = _SLACK_MARGIN * max(differences[-1], 0.5 * differences[-2] if differences[1:] else 0.0)
             if differences[1:]:
                 error = max(error, _error_of_falling(differences))
-            if error <= problem.tolerance and len(differences) > 1:
-                status = Status.OK
+                status = _kept(problem, solution, differences, error, of_peaks)
+            if status is not Status.TOLERANCE_NOT_MET:
                 break
             next_work = 4 * cells * solution.steps
             left = len(meshes) - meshes.index(cells) - 1
             if next_work > _ENOUGH and _hopeless(problem, differences, error, left):
                 break
-        before = solution
+        before = solution, peaks
     if solution is None:
         raise _too_long(problem, meshes[0])
     if not differences and status is Status.TOLERANCE_NOT_MET:
         status = Status.STEP_LIMIT
     elif status is Status.TOLERANCE_NOT_MET and goes_slack(solution):
         status = Status.NOT_SETTLED
+    snap = SnapPeak(SNAP_WINDOW, peaks, of_peaks) if goes_slack(solution) else None
     if problem.native_times:
         solution = run_chain(problem.scene, used, measured=problem.measured, wind=problem.wind,
                              native_times=True)  # fmt: skip
-    return Refined(solution, "nonlinear", VISCOUS, used, error, _ended(solution, status))
+    return Refined(solution, "nonlinear", VISCOUS, used, error, _ended(solution, status), snap)
+
+
+def _kept(
+    problem: Problem, solution: Solution, differences: list[float], error: float, of_peaks: float | None
+) -> Status:
+    """Return OK where the tolerance is kept, and PEAKS_ONLY where a slack cable keeps it in its peaks.
+
+    One more mesh is worth its time where the tension itself would then be within the tolerance.
+    """
+    if error <= problem.tolerance:
+        return Status.OK
+    next_error = error * min(1.0, differences[-1] / max(differences[-2], 1e-300))
+    if of_peaks is not None and goes_slack(solution) and of_peaks <= problem.tolerance < next_error:
+        return Status.PEAKS_ONLY
+    return Status.TOLERANCE_NOT_MET
 
 
 def _too_long(problem: Problem, cells: int) -> DataError:
@@ -185,10 +208,6 @@ def _affordable(problem: Problem, meshes: list[int], *, viscous: bool) -> Iterat
         if not is_affordable(problem, cells, viscous=viscous):
             return
         yield cells
-
-
-def _march_viscous(problem: Problem, cells: int) -> Solution:
-    return run_chain(problem.scene, cells, measured=problem.measured, wind=problem.wind)
 
 
 def _march_taut(problem: Problem, cells: int, largest: float) -> Solution:

@@ -139,7 +139,13 @@ def test_the_summary_agrees_with_its_published_schema(solver: Solver, typed: Cal
     found = json.loads(out)
     assert solve_schema()["required"] == list(found)
     TypeAdapter(SolveSummary).validate_json(out, strict=True)
-    assert found["error"] == {"numerical": None, "model": None, "spread": 0.2, "peak": None, "peak_range": None}
+    assert found["error"] == {
+        "numerical": None,
+        "model": None,
+        "spread": 0.2,
+        "peak": None,
+        "peak_range": None,
+    }
     assert found["slack"]["0.5"] == [[0.0, 0.02]]
     assert out.count("\n") == 1
 

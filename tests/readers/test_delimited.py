@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import datetime as dt
+import re
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
 
 FORCE = [5.125, -0.5, 1234.75, 0.0]
@@ -234,3 +236,115 @@ def test_a_decimal_comma_that_shows_far_down_decides(write):
 def test_the_time_unit_of_the_settings(write, settings):
     log = read_log(write("time,F\n0,1\n500,2\n"), settings(units={"time": "ms"}))
     assert only(log).time.tolist() == [0.0, 0.5]
+
+
+def test_columns_and_rate_of_the_settings(write, settings):
+    log = read_log(write("5;1\n6;2\n4;3\n"), settings(columns=("F_top", "T [degC]"), rate=50.0))
+    assert [(channel.name, channel.unit) for channel in log.channels] == [("F_top", ""), ("T [degC]", "degC")]
+    assert log.channels[0].time.tolist() == [0.0, 0.02, 0.04]
+    assert (log.rate, log.header_line, log.start) == (50.0, None, None)
+    assert log.remarks == ("the time is counted from rate = 50 Hz in run.toml",)
+
+
+def test_a_rate_is_taken_before_the_log_s_own_time_and_says_so(write, settings):
+    log = read_log(write("time [s],F\n0,1\n7,2\n"), settings(rate=10.0))
+    assert [channel.name for channel in log.channels] == ["time", "F"]
+    assert log.channels[1].time.tolist() == [0.0, 0.1]
+    assert "column 'time' is not used as the time" in log.remarks
+
+
+@pytest.mark.parametrize(
+    ("unit", "cells", "start", "steps"),
+    [
+        ("ms", ("0", "3", "1001"), None, [0.0, 0.003, 1.001]),
+        ("us", ("0", "3", "7"), None, [0.0, 3e-6, 7e-6]),
+        ("min", ("0", "0.5", "1"), None, [0.0, 30.0, 60.0]),
+        ("s", ("1788588000.5", "1788588001", "1788588002"),
+         dt.datetime(2026, 9, 5, 6, 0, 0, 500000, tzinfo=dt.UTC), [0.0, 0.5, 1.5]),
+        ("excel", ("46270.5", "46270.75", "46271"), dt.datetime(2026, 9, 5, 12), [0.0, 21600.0, 43200.0]),
+        ("datenum", ("740230.5", "740230.75", "740231"), dt.datetime(2026, 9, 5, 12),
+         [0.0, 21600.0, 43200.0]),
+    ],
+)  # fmt: skip
+def test_the_time_that_the_settings_name(write, settings, unit, cells, start, steps):
+    text = "time,clock,F\n" + "".join(f"{k},{cell},{k}.5\n" for k, cell in enumerate(cells))
+    log = read_log(write(text), settings(time="clock", units={"clock": unit}))
+    assert [channel.name for channel in log.channels] == ["time", "F"]
+    assert log.channels[1].time.tolist() == steps
+    assert log.start == start
+
+
+def test_stamps_that_the_settings_name(write, settings):
+    text = "time [s],day,hour,F\n0,2026-09-05,14:20:00,1\n1,2026-09-05,14:20:02,2\n"
+    log = read_log(write(text), settings(time="day"))
+    assert log.start == dt.datetime(2026, 9, 5, 14, 20)
+    assert log.channels[-1].time.tolist() == [0.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "keys", "match"),
+    [
+        ("time,F\n0,1\n1,2\n", {"time": "clock"}, "time = 'clock', which the log does not have"),
+        ("a,F\nx,1\ny,2\n", {"time": "a"}, "the time column 'a' holds text"),
+        ("a,F\n,1\n,2\n", {"time": "a"}, "the time column 'a' holds nothing"),
+        ("time,F\n0,1\n1,2\n", {"columns": ("t", "F")}, "columns, but the log names its own: 'time', 'F'"),
+        ("0,1\n1,2\n", {"columns": ("t", "F", "G")}, "run.toml names 3 columns, the rows have 2"),
+        ("5,1\n4,2\n", {}, "found no time column among 'column 1', 'column 2'"),
+        ("F,T\n5,1\n4,2\n", {}, "found no time column among 'F', 'T'"),
+        ("0,1\n1,2\n", {"columns": ("F", "G")}, "found no time column among 'F', 'G'"),
+        ("clock,F\n1e9,1\n2e9,2\n", {"time": "clock", "units": {"clock": "excel"}}, "is no day of 'excel'"),
+    ],
+)
+def test_settings_that_do_not_fit_are_refused(write, settings, text, keys, match):
+    with pytest.raises(FileFormatError, match=re.escape(match)) as caught:
+        read_log(write(text), settings(**keys))
+    assert "run.toml" in str(caught.value) or "export" in caught.value.remedy
+
+
+def test_a_log_without_time_is_told_what_to_write(write):
+    with pytest.raises(FileFormatError) as caught:
+        read_log(write("F,T\n5,1\n4,2\n"))
+    assert 'time = "F"' in caught.value.remedy
+    assert 'rate = "100 Hz"' in caught.value.remedy
+
+
+def test_a_calibration_is_told_from_a_log(write):
+    with pytest.raises(FileFormatError, match="it is a calibration of a load cell, not a log"):
+        read_log(write("measured,real\n312660.5,200.1\n330461.0,200.1\n"))
+
+
+def test_microseconds_since_1970_are_exact(write):
+    cells = [f"1788588000.{k * 137 % 1_000_000:06}" for k in range(0, 90_000, 601)]
+    log = read_log(write("Time,F\n" + "".join(f"{cell},1\n" for cell in cells)))
+    exact = [(int(cell[-6:]) - int(cells[0][-6:])) / 1e6 for cell in cells]
+    assert only(log).time.tolist() == exact
+
+
+def test_nanoseconds_since_1970_are_exact(write):
+    log = read_log(write("Time,F\n1788588000123456789,1\n1788588000123456790,2\n1788588000123457789,3\n"))
+    assert only(log).time.tolist() == [0.0, 1e-9, 1e-6]
+    assert log.start == dt.datetime(2026, 9, 5, 6, 0, 0, 123457, tzinfo=dt.UTC)
+
+
+def test_a_jittered_clock_with_repeats_stays_as_logged(write):
+    cells = [f"1494195205.{part}" for part in ("3875", "4125001", "4125001", "4", "4250002")]
+    log = read_log(write("time,raw reading\n" + "".join(f"{cell},{k}\n" for k, cell in enumerate(cells))))
+    assert only(log).time.tolist() == [0.0, 0.0250001, 0.0250001, 0.0125, 0.0375002]
+
+
+@pytest.mark.parametrize("word", ["NaN", "LOST", "overflow", "#N/A"])
+def test_many_words_for_missing(write, word):
+    rows = "".join(f"{k},{word if k % 3 else k},{word}\n" for k in range(3000))
+    log = read_log(write("time [s],F,T\n" + rows))
+    assert np.isnan(log.channels[0].values).tolist() == [k % 3 > 0 for k in range(3000)]
+    assert log.remarks == (
+        f"column 'F': 2000 cells {word!r} read as missing, first in line 3",
+        f"column 'T': 3000 cells {word!r} read as missing, first in line 2",
+    )
+
+
+def test_a_word_that_is_none_is_found_among_many_that_are(write):
+    rows = "".join(f"{k},{'NaN' if k != 1500 else 'loose'}\n" for k in range(3000))
+    with pytest.raises(FileFormatError, match="found 'loose' in column 'F'") as caught:
+        read_log(write("time [s],F\n" + rows))
+    assert caught.value.line == 1502

@@ -9,8 +9,12 @@ import sys
 
 import typer
 
+from tethertest.cli.analyze import analyze
 from tethertest.cli.bench import bench
+from tethertest.cli.export import export
+from tethertest.cli.ingest import ingest
 from tethertest.cli.inspect import inspect
+from tethertest.cli.new import new
 from tethertest.cli.report import report
 from tethertest.cli.scale import scale
 from tethertest.cli.schema import schema
@@ -29,7 +33,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.callback()(show_version)
-for command in (report, inspect, solve, scale, bench, schema):
+for command in (report, inspect, new, analyze, ingest, export, solve, scale, bench, schema):
     app.command()(command)
 
 

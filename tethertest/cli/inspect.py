@@ -10,7 +10,7 @@ import typer
 
 
 def inspect(
-    path: Annotated[Path, typer.Argument(help="A log, or a run folder.")],
+    path: Annotated[Path, typer.Argument(help="A log, a run folder, or a run store.")],
     rigs: Annotated[
         Path | None, typer.Option(help="Folder of rig files [found upwards from the run].")
     ] = None,

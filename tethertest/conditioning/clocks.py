@@ -38,6 +38,8 @@ BREAK = 5e-3
 EXPLAINED = 0.3
 #: drift above the believable one by this many standard errors is a finding
 DRIFT_SIGMAS = 3.0
+#: standard error of an offset set by hand without one: what an eye reads off two records [s]
+HAND_ERROR = 0.01
 #: believable drift of a clock that the rig does not list [1]
 DEFAULT_DRIFT = 1e-4
 
@@ -78,8 +80,12 @@ def fitted_clock(
     believable = next((item.clock_drift for item in run.rig.instrument if item.name == clock), DEFAULT_DRIFT)
     by_hand = run.file.override.clock_offset.get(clock)
     if by_hand is not None:
-        text = f"offset {by_hand.value:+.4f} s set by hand: {by_hand.reason}"
-        fit = ClockFit(clock, guide.reference_clock, by_hand.value, 0.0, 0.0, believable / np.sqrt(3.0), text)
+        error = HAND_ERROR if by_hand.error is None else by_hand.error
+        doubt = f"+/- {1e3 * error:.3g} ms{', assumed' if by_hand.error is None else ''}"
+        text = f"offset {by_hand.value:+.4f} s ({doubt}) set by hand: {by_hand.reason}"
+        fit = ClockFit(
+            clock, guide.reference_clock, by_hand.value, error, 0.0, believable / np.sqrt(3.0), text
+        )
         return fit, (Finding(clock, "clock_override", text, "note"),)
     comparable = _comparable(channels, reference, run, guide)
     if isinstance(comparable, str):

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tethertest.conditioning.clocks import fitted_clock, identity
+from tethertest.conditioning.cross_check import cross_findings, gains
 from tethertest.conditioning.flags import flag_findings, sensor_of, with_excludes, with_range_flagged
 from tethertest.conditioning.guide import Guide
 from tethertest.conditioning.hum import with_hum_flagged
@@ -18,10 +19,11 @@ from tethertest.conditioning.plausible import check_alive, check_ranges, check_r
 from tethertest.conditioning.rest import windows_of
 from tethertest.conditioning.sensors import finished
 from tethertest.conditioning.spikes import with_spikes_flagged
+from tethertest.conditioning.steps import with_steps_flagged
 from tethertest.errors import DataError
 from tethertest.records.channel import Channel, ClockFit, ConditionedRun, Finding, RawLog
 from tethertest.records.rig import sensor_noise
-from tethertest.records.run import Run
+from tethertest.records.run import Log, Run
 
 #: hum is judged against the tension noise that the rig states; a cell without a statement has this much [N]
 DEFAULT_NOISE = 0.015
@@ -40,7 +42,7 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
     run : Run
         The run and its rig.
     logs : mapping of str to RawLog
-        The logs as read, by their ``file`` in run.toml.
+        The logs as read, by their `Log.key` in run.toml.
     guide : Guide
         What the rig's mechanics says beforehand.
 
@@ -55,7 +57,7 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
     DataError
         Names, units, stamps, calibration or windows are wrong in a way that only a person can mend.
     """
-    opened = [_opened(run, entry.file, logs) for entry in run.file.log]
+    opened = [_opened(run, entry, logs[entry.key]) for entry in run.file.log]
     for channel in (channel for item in opened for channel in item.channels):
         check_rate(channel, run.rig)
         check_alive(channel)
@@ -85,16 +87,16 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
             fit, problems = fitted_clock(name, believed[name], reference, run, guide)
         fits.append(fit)
         findings += [
-            _mapped_finding(item, fit) for log in opened if log.clock == name for item in log.findings
+            mapped_finding(item, fit) for log in opened if log.clock == name for item in log.findings
         ]
         findings += problems
-        channels += [_mapped(channel, fit) for channel in by_clock[name]]
+        channels += [mapped(channel, fit) for channel in by_clock[name]]
     windows = windows_of(run, channels, guide.drive_frequency)
     done, found = finished(channels, run.rig, guide, windows)
     findings += (*windows.findings, *found)
     at_rest = [item for item in (windows.rest_before, windows.rest_after) if item is not None]
     result: list[Channel] = []
-    for channel in done:
+    for channel in with_steps_flagged(done):
         sensor = sensor_of(run.rig, channel)
         flagged = with_range_flagged(channel, sensor)
         if flagged.kind == "tension":
@@ -108,15 +110,19 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
     order = {sensor.name: number for number, sensor in enumerate(run.rig.sensor)}
     ordered = sorted(excluded, key=lambda channel: order[channel.name])
     findings += [finding for channel in ordered for finding in flag_findings(channel)]
+    if windows.steady is not None:
+        frequency = guide.drive_frequency or run.file.drive.frequency
+        adrift = {item.subject for item in findings if item.kind == "clock_not_aligned"}
+        compared = gains(ordered, run.rig, windows.steady, guide.static_tension, frequency, adrift)
+        findings += cross_findings(compared, run.rig)
     return ConditionedRun(
         tuple(ordered), tuple(fits), tuple(findings), windows.rest_before, windows.rest_after, windows.steady
     )
 
 
-def _opened(run: Run, file: str, logs: Mapping[str, RawLog]) -> LoggedChannels:
+def _opened(run: Run, entry: Log, log: RawLog) -> LoggedChannels:
     """Return one log's channels, load cells calibrated and bad samples flagged."""
-    entry = next(entry for entry in run.file.log if entry.file == file)
-    logged = as_logged(logs[file], entry, run)
+    logged = as_logged(log, entry, run)
     channels: list[Channel] = []
     findings = list(logged.findings)
     for channel in logged.channels:
@@ -166,7 +172,7 @@ def _check_overlap(opened: Sequence[LoggedChannels]) -> None:
         raise DataError(message, remedy, path=last.source.file if last.source else None)
 
 
-def _mapped(channel: Channel, fit: ClockFit) -> Channel:
+def mapped(channel: Channel, fit: ClockFit) -> Channel:
     """Return the channel on the reference clock."""
     if fit.clock == fit.reference:
         return channel.with_step(f"clock {fit.clock}: the run's clock")
@@ -177,7 +183,8 @@ def _mapped(channel: Channel, fit: ClockFit) -> Channel:
     return channel.with_time(fit.to_reference(channel.time), step)
 
 
-def _mapped_finding(finding: Finding, fit: ClockFit) -> Finding:
+def mapped_finding(finding: Finding, fit: ClockFit) -> Finding:
+    """Return a finding with its spans on the reference clock."""
     spans = tuple(
         (float(start), float(stop))
         for start, stop in (fit.to_reference(np.asarray(span, dtype=np.float64)) for span in finding.spans)

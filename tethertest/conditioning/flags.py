@@ -20,6 +20,7 @@ WORDS = {
     Flag.OUT_OF_RANGE: "beyond the sensor's range",
     Flag.SATURATED: "the amplifier is at its limit",
     Flag.SPIKE: "isolated samples far from their neighbours",
+    Flag.STEP: "the level leaps and stays: its zero is not the same before and after",
     Flag.LOST: "the grating's peak was not seen",
     Flag.SLIPPED: "the grating was found in another column and put back",
 }
@@ -87,17 +88,21 @@ def flag_findings(channel: Channel) -> tuple[Finding, ...]:
         On the run's clock.
     """
     found: list[Finding] = []
-    for flag, words in WORDS.items():
+    for flag in WORDS:
         marked = (channel.flags & np.uint16(flag)) != 0
         if not marked.any():
             continue
-        spans = spans_of(channel, marked)
         count = int(np.count_nonzero(marked))
-        named = ", ".join(f"{start:.3f}-{stop:.3f} s" for start, stop in spans[:SPANS_NAMED])
-        more = f" and {len(spans) - SPANS_NAMED} more" if len(spans) > SPANS_NAMED else ""
-        text = f"{words}: {count} samples in {len(spans)} spans, {named}{more}"
-        found.append(Finding(channel.name, (flag.name or "").lower(), text, spans=spans, samples=count))
+        found.append(flag_finding(channel.name, flag, spans_of(channel, marked), count))
     return tuple(found)
+
+
+def flag_finding(name: str, flag: Flag, spans: tuple[tuple[float, float], ...], count: int) -> Finding:
+    """Return the finding about one kind of flag, a key of `WORDS`, on some samples of a channel."""
+    named = ", ".join(f"{start:.3f}-{stop:.3f} s" for start, stop in spans[:SPANS_NAMED])
+    more = f" and {len(spans) - SPANS_NAMED} more" if len(spans) > SPANS_NAMED else ""
+    text = f"{WORDS[flag]}: {count} samples in {len(spans)} spans, {named}{more}"
+    return Finding(name, (flag.name or "").lower(), text, spans=spans, samples=count)
 
 
 def spans_of(channel: Channel, marked: BoolArray) -> tuple[tuple[float, float], ...]:

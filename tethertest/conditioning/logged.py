@@ -50,11 +50,13 @@ def as_logged(raw: RawLog, entry: Log, run: Run) -> LoggedChannels:
         stamps = audited(group[0].raw.time + start, raw, entry.clock)
         found += stamps.findings
         columns = [_column(pairing, stamps, raw, entry) for pairing in group]
-        gratings = [pairing.sensor is None or is_grating(pairing.sensor) for pairing in group]
-        named = [channel for channel, grating in zip(columns, gratings, strict=True) if not grating]
-        peaks = [channel for channel, grating in zip(columns, gratings, strict=True) if grating]
+        optical = [pairing.sensor is None or is_grating(pairing.sensor) for pairing in group]
+        named = [channel for channel, grating in zip(columns, optical, strict=True) if not grating]
+        peaks = [channel for channel, grating in zip(columns, optical, strict=True) if grating]
         if peaks:
-            named += assigned(peaks, run.rig)
+            gratings, doubts = assigned(peaks, run.rig)
+            named += gratings
+            found += doubts
         moved, jump_findings = without_jumps(named, entry.clock)
         channels += moved
         found += jump_findings
@@ -73,8 +75,14 @@ def _with_same_times(pairings: Sequence[Pairing]) -> Iterator[list[Pairing]]:
 
 def _column(pairing: Pairing, stamps: Stamps, raw: RawLog, entry: Log) -> Channel:
     scale = pairing.scale
-    values = scale.factor * pairing.raw.values[stamps.rows] + scale.offset
+    logged, told = pairing.raw.values, pairing.raw.flags
+    if pairing.raw.as_written is not None and (pairing.sensor is None or is_grating(pairing.sensor)):
+        # the rig knows its gratings better than the reader, who had to learn them from the log
+        logged, told = pairing.raw.as_written, None
+    values = scale.factor * logged[stamps.rows] + scale.offset
     missing = np.where(np.isfinite(values), np.uint16(0), np.uint16(Flag.MISSING))
+    if told is not None:
+        missing |= told[stamps.rows]
     sensor = pairing.sensor
     source = Source(
         raw.path.name,

@@ -12,7 +12,7 @@ from tethertest.units import UnitScale, channel_scale
 
 #: what a sensor's channel may be logged as, by the sensor's kind, tried in this order
 LOGGED_KINDS = {
-    "tension": ("tension", "ratio", "count"),
+    "tension": ("tension", "ratio", "voltage", "count"),
     "wavelength": ("wavelength",),
     "displacement": ("displacement",),
 }

@@ -11,11 +11,17 @@ from tethertest.conditioning.flags import sensor_of
 from tethertest.conditioning.guide import Guide
 from tethertest.conditioning.mapping import is_grating
 from tethertest.conditioning.rest import RunWindows
-from tethertest.conditioning.strain import strain_of, temperature_of
+from tethertest.conditioning.strain import (
+    RECTANGLE,
+    TEMPERATURE_CUTOFF,
+    apparent_strain,
+    strain_of,
+    temperature_of,
+)
 from tethertest.conditioning.tare import DEFAULT_RATED, STRAIN_DRIFT, TENSION_DRIFT, Level, rest_level, zeroed
 from tethertest.records.channel import Channel, Finding
 from tethertest.records.rig import Rig, Sensor
-from tethertest.signal.filters import filled
+from tethertest.signal.filters import filled, low_passed
 from tethertest.signal.noise import white_noise
 
 #: the base stands in the same place before and after when it differs by less than this [m]: only then does a
@@ -98,14 +104,8 @@ def _strain(
     windows: RunWindows,
     level: Level | None,
 ) -> tuple[Channel, tuple[Finding, ...]]:
-    found: tuple[Finding, ...] = ()
-    temperature = temperatures.get(sensor.compensation or "")
-    if sensor.compensation and (temperature is None or not temperature.usable.any()):
-        text = f"no temperature from {sensor.compensation!r}: strain is not compensated"
-        found = (Finding(sensor.name, "not_compensated", text),)
-        temperature = None
-    if temperature is not None and temperature.unit != "K":
-        temperature = None
+    temperature = _change(sensor, rig, temperatures, windows)
+    found = () if temperature is not None else _uncompensated(sensor)
     if level is not None:
         rest = level.value
     else:
@@ -114,6 +114,43 @@ def _strain(
     before, after = _levels(strain, windows)
     tared, drifted = zeroed(strain, before, after, 0.0, STRAIN_DRIFT)
     return tared, (*found, *drifted)
+
+
+def _change(
+    sensor: Sensor, rig: Rig, temperatures: dict[str, Channel], windows: RunWindows
+) -> Channel | None:
+    """Return the temperature change since rest [K] that compensates a grating; None where there is none."""
+    temperature = temperatures.get(sensor.compensation or "")
+    if temperature is None or temperature.unit != "K" or not temperature.usable.any():
+        return None
+    if is_grating(sensor_of(rig, temperature)):
+        return temperature
+    before, after = _levels(temperature, windows)
+    level = before or after
+    rest = level.value if level else float(np.median(temperature.values[temperature.usable]))
+    smooth = low_passed(filled(temperature), temperature.rate, TEMPERATURE_CUTOFF)
+    return temperature.with_values(smooth - rest)
+
+
+def _uncompensated(sensor: Sensor) -> tuple[Finding, ...]:
+    """Say what an uncompensated grating is worth: a note where the rig states how far temperature may go."""
+    why = (
+        f"no temperature from {sensor.compensation!r}"
+        if sensor.compensation
+        else "no compensation in the rig file"
+    )
+    if sensor.temperature_change is not None:
+        open_ = 1e6 * abs(apparent_strain(sensor, sensor.temperature_change)) * RECTANGLE
+        text = (
+            f"{why}: the strain is uncertain by {open_:.3g} microstrain (standard) for the stated "
+            f"+/-{sensor.temperature_change:g} K"
+        )
+        return (Finding(sensor.name, "not_compensated", text, "note"),)
+    text = (
+        f"{why}: strain is not compensated, a kelvin reads as "
+        f"{1e6 * apparent_strain(sensor, 1.0):.3g} microstrain; state temperature_change in the rig file"
+    )
+    return (Finding(sensor.name, "not_compensated", text),)
 
 
 def _noise(channel: Channel) -> float:

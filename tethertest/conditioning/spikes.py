@@ -32,13 +32,17 @@ WAVE_DELAY = 0.008
 ANSWER_SIGMAS = 6.0
 
 
-def with_spikes_flagged(channels: Sequence[Channel]) -> tuple[Channel, ...]:
+def with_spikes_flagged(
+    channels: Sequence[Channel], sigmas: Sequence[float] | None = None
+) -> tuple[Channel, ...]:
     """Return the channels of one clock with `Flag.SPIKE` where a sample stands alone.
 
     Parameters
     ----------
     channels : sequence of Channel
         Channels that see the same cable; what more than one of them shows within a wave's delay is kept.
+    sigmas : sequence of float, optional
+        Standard deviation of one sample of each, where the channels are only a part of the record.
 
     Returns
     -------
@@ -46,7 +50,7 @@ def with_spikes_flagged(channels: Sequence[Channel]) -> tuple[Channel, ...]:
         The same channels, in the same order.
     """
     values = [_without_holes(channel) for channel in channels]
-    sigmas = [white_noise(item) for item in values]
+    sigmas = [white_noise(item) for item in values] if sigmas is None else sigmas
     answers = [
         _answers(channel, item, sigma) for channel, item, sigma in zip(channels, values, sigmas, strict=True)
     ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -95,7 +95,12 @@ def zeroed(
         f"zero offset {offset:.6g} {channel.unit} (+/- {level.error:.2g}) taken out, rest at {expected:.6g}; "
         f"drift {drift:+.3g} {channel.unit} over {elapsed:.4g} s taken out as a straight line"
     )
-    changed = channel.with_values(channel.values - line, step)
+    # that a drift was straight is not known: at worst all of it came at once, half of it either way
+    unknown = np.hypot(level.error, drift / np.sqrt(12.0))
+    changed = replace(
+        channel.with_values(channel.values - line, step),
+        offset_uncertainty=float(np.hypot(channel.offset_uncertainty, unknown)),
+    )
     if abs(drift) <= allowed_drift:
         return changed, ()
     text = (

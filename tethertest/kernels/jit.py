@@ -23,9 +23,9 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     name = function.__qualname__
     function.__qualname__ = f"{name}-{_digest()}"
     try:
-        kernel: Any = numba.njit(cache=True)(function)
+        kernel: Any = numba.njit(cache=True, nogil=True)(function)
     except RuntimeError:  # numba found no folder to keep its cache in
-        kernel = numba.njit(function)
+        kernel = numba.njit(nogil=True)(function)
     finally:
         function.__qualname__ = name
     kernel.__qualname__ = name

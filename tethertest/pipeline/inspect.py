@@ -1,4 +1,4 @@
-"""What a bare log or a run folder is."""
+"""What a bare log, a run folder or a run store is."""
 
 from __future__ import annotations
 
@@ -6,17 +6,19 @@ from pathlib import Path
 from typing import Any
 
 from tethertest.errors import TethertestError
+from tethertest.pipeline.store_summary import describe_store
 from tethertest.readers import load_run, read_log
 from tethertest.readers.inspect import describe
+from tethertest.store import is_store
 
 
 def inspect_path(path: Path, rigs: Path | None = None) -> dict[str, Any]:
-    """Describe a log, or every log of a run folder.
+    """Describe a log, a run store, or every log of a run folder.
 
     Parameters
     ----------
     path : Path
-        A log (no rig needed) or a run folder.
+        A log or a run store (no rig needed), or a run folder.
     rigs : Path, optional
         Folder of rig files.
 
@@ -25,6 +27,8 @@ def inspect_path(path: Path, rigs: Path | None = None) -> dict[str, Any]:
     TethertestError
         The path or a file in it cannot be read.
     """
+    if is_store(path):
+        return describe_store(path)
     if not path.is_dir():
         return describe(read_log(path))
     if not (path / "run.toml").is_file():

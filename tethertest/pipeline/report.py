@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from tethertest.compare import compare
-from tethertest.conditioning import Guide, condition, stated_findings
+from tethertest.conditioning import stated_findings
 from tethertest.errors import DataError
+from tethertest.pipeline.conditioned import conditioned, placed, read_logs
 from tethertest.pipeline.expect import expectation
 from tethertest.pipeline.provenance import provenance
-from tethertest.readers import load_prototype_of, load_run, read_log
+from tethertest.readers import load_prototype_of, load_run
 from tethertest.records.channel import Channel, ConditionedRun, RawLog, Window
 from tethertest.records.lines import ChannelLines, DriveFit, Event
 from tethertest.records.report import Report
@@ -26,7 +27,6 @@ from tethertest.records.similarity import Similarity
 from tethertest.replay import (
     BottomMotion,
     bottom_motion,
-    expected_bottom_tension,
     replayed_channels,
     rest_tensions,
     run_scene,
@@ -72,22 +72,15 @@ def make_report(folder: Path, rigs: Path | None = None) -> Report:
     """
     run = load_run(folder, rigs)
     prototype = load_prototype_of(run.rig, run.rig_path)
-    logs = {log.file: read_log(run.folder / log.file, log) for log in run.file.log}
+    logs = read_logs(run)
     try:
         return _reported(run, prototype, logs)
     except DataError as error:
-        raise _placed(error, run) from error
-
-
-def _placed(error: DataError, run: Run) -> DataError:
-    """Return the error with the file's place; what no log is to blame for is mended in run.toml."""
-    name = error.path or "run.toml"
-    path = run.folder / name if error.path is None or name in {log.file for log in run.file.log} else name
-    return DataError(error.problem, error.remedy, path=path, line=error.line)
+        raise placed(error, run) from error
 
 
 def _reported(run: Run, prototype: Prototype | None, logs: Mapping[str, RawLog]) -> Report:
-    measured = condition(run, logs, _guide(run))
+    measured = conditioned(run, logs)
     drive = _drive(run, measured)
     measured = replace(measured, findings=(*measured.findings, *stated_findings(run, measured, drive)))
     replayed = _replay(run, measured, drive)
@@ -117,14 +110,6 @@ def _reported(run: Run, prototype: Prototype | None, logs: Mapping[str, RawLog])
         comparison=comparison,
         similarity=_similarity(run, prototype, drive),
         provenance=provenance(run, logs, _settings(replayed)),
-    )
-
-
-def _guide(run: Run) -> Guide:
-    return Guide(
-        static_tension=rest_tensions(run.rig),
-        expected_tension=expected_bottom_tension(run),
-        drive_frequency=run.file.drive.frequency,
     )
 
 

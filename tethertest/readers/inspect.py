@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tethertest.errors import QuantityError
-from tethertest.records.channel import RawChannel, RawLog
+from tethertest.records.channel import Flag, RawChannel, RawLog
 from tethertest.units import UnitScale, channel_scale
 
 #: a step this many times the usual one is a gap
@@ -68,8 +68,17 @@ def _channel(channel: RawChannel, remarks: list[str]) -> dict[str, Any]:
             "duplicate_time": int(np.count_nonzero(steps == 0)),
             "backward_time": int(np.count_nonzero(steps < 0)),
             "gap": int(np.count_nonzero(steps > GAP_STEPS * usual)) if usual > 0 else 0,
+            **_told(channel),
         },
     }
+
+
+def _told(channel: RawChannel) -> dict[str, int]:
+    """Return how many samples carry each flag that the reader itself could tell."""
+    if channel.flags is None:
+        return {}
+    counts = {flag: int(np.count_nonzero(channel.flags & np.uint16(flag))) for flag in Flag if flag}
+    return {(flag.name or "").lower(): count for flag, count in counts.items() if count}
 
 
 def _scale(channel: RawChannel, remarks: list[str]) -> UnitScale:

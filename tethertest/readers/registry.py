@@ -8,14 +8,18 @@ from typing import Final, Protocol
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.formats import (
+    archive,
     catman,
     delimited,
     enlight_peaks,
     enlight_sensors,
     enlight_spectrum,
-    foreign,
+    fbgs,
+    hdf5,
+    json_log,
     lvm,
     tdms,
+    toa5,
 )
 from tethertest.readers.text.document import Head, nul_bytes, read_head
 from tethertest.readers.text.encoding import detect_encoding
@@ -45,14 +49,26 @@ READERS: Final[tuple[Reader, ...]] = (
     enlight_sensors,
     enlight_peaks,
     enlight_spectrum,
-    foreign,
+    fbgs,
+    toa5,
+    hdf5,
+    json_log,
+    archive,
     delimited,
 )
 GENERIC: Final[Reader] = delimited
+#: reader -> keys of a log in run.toml that map its columns; another reader would pass over them in silence
+_MAPPED: Final = {
+    "archive": {"table", "columns", "time", "rate"},
+    "hdf5": {"table", "columns", "time", "rate"},
+    "delimited": {"columns", "time", "rate"},
+    "json": {"table", "columns", "time", "rate"},
+    "fbgs": {"rate"},
+    "catman": {"rate"},
+}
 #: files that people have at hand and no reader here can use
 _FOREIGN: Final = (
     (b"MDF ", "an ASAM MDF measurement"),
-    (b"\x89HDF", "an HDF5 file"),
     (b"MATLAB 5.0", "a MATLAB file"),
     (b"%PDF", "a PDF document"),
     (b"\x89PNG", "a picture"),
@@ -121,7 +137,24 @@ def read_log(path: Path | str, settings: Log | None = None) -> RawLog:
         The file is missing, empty, cut, ambiguous, or belongs to no reader.
     """
     reader, reason = identified(path, settings)
+    refuse_keys(Path(path), reader, settings)
     return replace(reader.read(Path(path), settings), reason=reason)
+
+
+def refuse_keys(path: Path, reader: Reader, settings: Log | None) -> None:
+    """Refuse keys of run.toml that the reader does not use."""
+    if settings is None:
+        return
+    given = {
+        "table": settings.table is not None,
+        "columns": bool(settings.columns),
+        "time": settings.time is not None,
+        "rate": settings.rate is not None,
+    }
+    for key in sorted(key for key, is_given in given.items() if is_given):
+        if key not in _MAPPED.get(reader.NAME, set()):
+            message = f"run.toml gives {key}, which the reader of {reader.NAME} logs does not use"
+            raise FileFormatError(message, f"remove {key} for this log", path=path)
 
 
 def _forced(head: Head, wanted: str, claims: list[tuple[Reader, str]]) -> tuple[Reader, str]:

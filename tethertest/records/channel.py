@@ -49,6 +49,8 @@ class RawChannel:
     unit: str  #: as written; "" where the file says nothing
     time: FloatArray  #: (n,) [s] since the log's start, by the logger's own stamps or rate
     values: FloatArray  #: (n,) as written, NaN where the logger left a hole
+    flags: FlagArray | None = None  #: (n,) `Flag` bits that only the file itself could tell, if there are any
+    as_written: FloatArray | None = None  #: (n,) where the reader put values of gratings into other columns
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,6 +98,7 @@ class Channel:
     uncertainty: float = 0.0  #: standard uncertainty of scale, relative
     noise: float = 0.0  #: standard deviation of one sample, in `unit`
     source: Source | None = None
+    offset_uncertainty: float = 0.0  #: standard uncertainty of a constant added to all values, in `unit`
 
     def __post_init__(self) -> None:
         if not self.time.shape == self.values.shape == self.flags.shape or self.time.ndim != 1:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
+from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Window
 from tethertest.records.response import NaturalFrequency
 
@@ -25,6 +26,17 @@ class LineVerdict(Enum):
     UNDETERMINED = "undetermined"
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Course:
+    """Amplitude and phase of one line, window by window."""
+
+    time: FloatArray  #: (n,) middles of the windows [s]
+    amplitude: FloatArray  #: (n,) peak of a cosine
+    amplitude_error: FloatArray  #: (n,) standard error
+    phase: FloatArray  #: (n,) [rad] against the line's own frequency, unwrapped
+    phase_error: FloatArray  #: (n,) standard error [rad]
+
+
 @dataclass(frozen=True, slots=True)
 class Line:
     """One order of the drive in one channel; amplitude is the peak of a cosine."""
@@ -38,6 +50,8 @@ class Line:
     p_value: float
     verdict: LineVerdict
     reason: str
+    course: Course | None = None  #: of the lines that were followed over the record
+    length_needed: float | None = None  #: [s] of a record that would resolve it, where this one does not
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +73,7 @@ class ChannelLines:
     lines: tuple[Line, ...]
     samples: int  #: used
     left_out: int  #: flagged and not used
+    speed_variation: float = 0.0  #: of the drive, relative, root mean square; orders are then of crank angle
 
     def line(self, order: str) -> Line | None:
         """Return the line of that order, if it was looked for."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from tethertest.records.cable import Air, Cable, Platform
+from tethertest.records.calibration import Calibration, CalibrationData
 from tethertest.records.quantity import SI
 from tethertest.units import KINDS, parse_quantity
 
@@ -38,15 +39,22 @@ class Sensor:
     #: load cell output at the rated load; bridges give a few mV/V
     sensitivity: Annotated[float, SI("1", above=0.0, maximum=0.1)] | None = None
     rated: Annotated[float, SI("N", above=0.0)] | None = None
+    calibration: Calibration | None = None  #: pairs of output and force, in place of the sensitivity
+    excitation: Annotated[float, SI("V", above=0.0)] | None = None  #: of the bridge, where a log has volts
     noise: str | None = None  #: standard deviation of one sample, text with unit
     calibrated: dt.date | None = None
     due: dt.date | None = None
     expected: Annotated[float, SI("m", above=0.0)] | None = None  #: grating's wavelength
     capture: Annotated[float, SI("m", above=0.0)] | None = None  #: largest believable distance from it
     gauge_factor: Annotated[float, SI("1", above=0.0)] | None = None
-    thermo_optic: Annotated[float, SI("1/K")] | None = None
+    thermo_optic: Annotated[float, SI("1/K")] | None = None  #: S1, at the temperature of rest
+    thermo_optic_squared: Annotated[float, SI("1/K^2")] | None = None  #: S2
     expansion: Annotated[float, SI("1/K")] | None = None
+    form: Literal["logarithmic", "linear"] = "logarithmic"  #: of wavelength against strain
     compensation: str | None = None  #: name of the temperature sensor
+    #: without one: the temperature stays within this of its value at rest
+    temperature_change: Annotated[float, SI("K", minimum=0.0, maximum=100.0)] | None = None
+    fibre: int | None = None  #: interrogator channel; gratings of one fibre share its peaks
 
 
 def sensor_range(sensor: Sensor) -> tuple[float, float]:
@@ -122,6 +130,9 @@ class Rig:
     uncertainty: Mapping[str, float] = field(
         default_factory=dict
     )  #: "cable.length" -> standard uncertainty in SI
+    calibrations: Mapping[str, CalibrationData] = field(
+        default_factory=dict
+    )  #: load cell -> its pairs, as read beside the rig file
 
     def sensor_named(self, name: str) -> Sensor | None:
         """Return the sensor of that name, if there is one."""

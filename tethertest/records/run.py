@@ -33,7 +33,7 @@ class RunPlatform:
 
 @dataclass(frozen=True, slots=True)
 class Log:
-    """One file of the run folder; the settings are only for what the file itself leaves open."""
+    """One table of a file of the run folder; the settings are only for what the file itself leaves open."""
 
     file: str
     clock: str  #: name of the rig's instrument
@@ -46,6 +46,15 @@ class Log:
     time_zone: str | None = None
     skip_rows: int = 0
     units: dict[str, str] = field(default_factory=dict)  #: name in the file -> unit, where the file has none
+    table: str | None = None  #: what to read in a container: member, sheet, path of keys, group or variable
+    columns: tuple[str, ...] = ()  #: names of the columns in order, where the file has none
+    time: str | None = None  #: name of the column or data set that is the time
+    rate: Annotated[float, SI("Hz", above=0.0)] | None = None  #: rate of the samples, where there is no time
+
+    @property
+    def key(self) -> str:
+        """The file, and the table where one is named: no other log of the run has the same."""
+        return self.file if self.table is None else f"{self.file}:{self.table}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +82,7 @@ class ClockOffset:
 
     value: Instant
     reason: str
+    error: Annotated[float, SI("s", above=0.0)] | None = None  #: its standard error; unknown if absent
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tethertest.signal.rotation import Times, times
+
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.intp]
 
@@ -29,7 +31,8 @@ class Blocks:
     weights: FloatArray  #: (b,) samples used over samples expected, 0 to about 1
     interval: float  #: between samples [s]
     width: int  #: samples in a full block
-    samples: FloatArray  #: (n,) [s], times of the samples in blocks with holes or jitter
+    grid: Times  #: (b,) the same times, for phasors
+    samples: Times  #: (n,) times of the samples in blocks with holes or jitter
     starts: IndexArray  #: first sample in `samples` of each such block
     irregular: IndexArray  #: number of each such block
 
@@ -53,11 +56,11 @@ class Blocks:
         half_angle = np.pi * frequency * self.interval
         # mean of equally spaced phasors: Dirichlet's kernel
         gain = np.sin(self.width * half_angle) / (self.width * np.sin(half_angle)) if half_angle else 1.0
-        means: npt.NDArray[np.complex128] = np.exp(2j * np.pi * frequency * (self.time - origin))
+        means = self.grid.rotating(frequency, origin)
         means *= np.where(self.weights > 0.0, gain, 0.0)
         if self.irregular.size:
-            rotating = np.exp(2j * np.pi * frequency * (self.samples - origin))
-            counts = np.diff(np.append(self.starts, self.samples.size))
+            rotating = self.samples.rotating(frequency, origin)
+            counts = np.diff(np.append(self.starts, rotating.size))
             means[self.irregular] = np.add.reduceat(rotating, self.starts) / counts
         return means
 
@@ -110,7 +113,17 @@ def block_means(
     kept = ~closed[np.searchsorted(filled, number)]
     irregular = filled[~closed]
     irregular_starts = np.searchsorted(number[kept], irregular)
-    return Blocks(mean_time, means, weights, interval, width, used_time[kept], irregular_starts, irregular)
+    return Blocks(
+        mean_time,
+        means,
+        weights,
+        interval,
+        width,
+        times(mean_time, step),
+        times(used_time[kept], interval),
+        irregular_starts,
+        irregular,
+    )
 
 
 def _equally_spaced(

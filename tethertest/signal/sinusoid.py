@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tethertest.signal.blocks import Blocks
+from tethertest.signal.tall import tall_cross, tall_times
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,14 +39,33 @@ class SinusoidFit:
     def pair_influence(self, indices: Sequence[int]) -> FloatArray:
         """Return the rows (2 len(indices), b) that give a, b of these frequencies from the values."""
         rows = [self.trend + 2 * index + part for index in indices for part in (0, 1)]
-        product: FloatArray = (self.inverse[rows] @ self.design.T) * self.weights
+        product: FloatArray = (tall_times(self.design, self.inverse[:, rows]) * self.weights[:, None]).T
         return product
 
     def without_trace(self, column: FloatArray) -> FloatArray:
         """Return a column (b,) or columns (b, m) with every fitted column projected out."""
         weighted = column * (self.weights if column.ndim == 1 else self.weights[:, None])
-        left: FloatArray = column - self.design @ (self.inverse @ (self.design.T @ weighted))
+        left: FloatArray = column - tall_times(self.design, self.inverse @ tall_cross(self.design, weighted))
         return left
+
+    def extended(self, frequency: float, pair: FloatArray) -> SinusoidFit:
+        """Return the fit with one more frequency, its columns (b, 2) given: exact, and nothing refitted."""
+        weighted = pair * self.weights[:, None]
+        shared = self.inverse @ tall_cross(self.design, weighted)
+        left = pair - tall_times(self.design, shared)
+        own = np.linalg.inv(tall_cross(left, left * self.weights[:, None]))
+        added = own @ tall_cross(weighted, self.residuals)
+        inverse = np.block([[self.inverse + shared @ own @ shared.T, -shared @ own], [-own @ shared.T, own]])
+        return SinusoidFit(
+            np.append(self.frequencies, frequency),
+            self.origin,
+            self.trend,
+            np.concatenate((self.coefficients - shared @ added, added)),
+            np.hstack((self.design, pair)),
+            inverse,
+            np.where(self.weights > 0.0, self.residuals - left @ added, 0.0),
+            self.weights,
+        )
 
     def amplitude(self, index: int) -> float:
         """Return the peak hypot(a, b) of one frequency."""
@@ -119,9 +139,9 @@ def fit_sinusoids(
         message = f"{np.count_nonzero(blocks.weights)} blocks for {design.shape[1]} coefficients"
         raise ValueError(message)
     weighted = design * blocks.weights[:, None]
-    inverse = np.asarray(np.linalg.inv(design.T @ weighted), dtype=np.float64)
-    coefficients = inverse @ (weighted.T @ blocks.values)
-    residuals = np.where(blocks.weights > 0.0, blocks.values - design @ coefficients, 0.0)
+    inverse = np.asarray(np.linalg.inv(tall_cross(design, weighted)), dtype=np.float64)
+    coefficients = inverse @ tall_cross(weighted, blocks.values)
+    residuals = np.where(blocks.weights > 0.0, blocks.values - tall_times(design, coefficients), 0.0)
     return SinusoidFit(
         np.asarray(frequencies, dtype=np.float64),
         origin,

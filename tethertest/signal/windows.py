@@ -50,6 +50,13 @@ DETECTABLE = 8.0
 PASSES = 3
 #: what is shorter than this many cycles is no steady window
 FEWEST_CYCLES = 3
+#: where means over two cycles never settle, cycles repeat each other within these shares of the amplitude,
+#: the tightest that finds enough of them: the tighter, the less of a ramp that sets in smoothly
+REPEATS_WITHIN = (0.003, 0.01, 0.03)
+#: a cycle is part of the motion when its amplitude is above this share of the largest: ramps climb in steps
+STRONG_SHARE = 0.5
+#: share of a cycle that a whole number of cycles may lack: the edges are found to within a few samples
+EDGE = 0.05
 #: the drive as found may differ from the nominal one by this fraction
 SPEED_SEARCH = 0.2
 
@@ -117,6 +124,9 @@ def find_rest(series: Series) -> Rest:
 def find_steady(series: Series, frequency: float) -> Steady | None:
     """Return the longest stretch of steady drive, a whole number of cycles long.
 
+    Amplitude and speed are means over two cycles. Where those never settle, as in a few cycles between long
+    ramps, the stretch is the longest in which each cycle repeats the one before.
+
     Parameters
     ----------
     series : Series
@@ -134,9 +144,17 @@ def find_steady(series: Series, frequency: float) -> Steady | None:
     if time.size < 2 or (time[-1] - time[0]) * frequency < FEWEST_CYCLES:
         return None
     values = np.interp(time, series.time, filled(series))
-    noise_level = white_noise(values)
-    noise = noise_level * np.sqrt(2.0 * frequency / (CYCLES_AVERAGED * rate))
+    noise = white_noise(values)
     found = _peak_frequency(values - values.mean(), rate, frequency)
+    return _settled_stretch(time, values, rate, frequency, found, noise) or _repeating_stretch(
+        time, values, rate, frequency, found, noise
+    )
+
+
+def _settled_stretch(
+    time: Floats, values: Floats, rate: float, frequency: float, found: float, noise_level: float
+) -> Steady | None:
+    noise = noise_level * np.sqrt(2.0 * frequency / (CYCLES_AVERAGED * rate))
     strong: Booleans | None = None
     for _ in range(PASSES):
         vector = _demodulated(time, values, rate, found)
@@ -163,6 +181,36 @@ def find_steady(series: Series, frequency: float) -> Steady | None:
         return None
     # what is left of a cycle goes at the start, where the transients are
     return Steady((float(stop - cycles / found), float(stop)), found, amplitude, cycles)
+
+
+def _repeating_stretch(
+    time: Floats, values: Floats, rate: float, frequency: float, found: float, noise: float
+) -> Steady | None:
+    """Return the longest stretch whose cycles repeat themselves, by the tightest tolerance that finds one."""
+    if abs(found - frequency) > SPEED_SEARCH * frequency:
+        return None
+    period = rate / found
+    vector = _demodulated(time, values, rate, found, cycles=1)
+    size = np.abs(vector)
+    amplitude = float(np.max(size))
+    if amplitude < DETECTABLE * noise * np.sqrt(2.0 / period) or amplitude <= 0.0:
+        return None
+    shift = int(np.ceil(period))
+    index = np.arange(values.size, dtype=np.float64)
+    change = np.abs(np.interp(index[:-shift] + period, index, values) - values[:-shift])
+    # both cycles belong to the strong part: a record at rest repeats itself too
+    strong = (size > STRONG_SHARE * amplitude)[shift // 2 :][: change.size - shift // 2]
+    for tolerance in REPEATS_WITHIN:
+        same = change[: strong.size] <= max(tolerance * amplitude, 2.0 * SETTLED_SIGMAS * noise)
+        first, last = _longest(np.asarray(same & strong))
+        cycles = int((last - first) / period + 1.0 + EDGE)
+        if last > first and cycles >= FEWEST_CYCLES:
+            # what is left of a cycle is shared by both ends: either may reach into a ramp
+            middle = 0.5 * (time[first] + time[last] + 1.0 / found)
+            half = 0.5 * cycles / found
+            span = (float(max(middle - half, time[0])), float(min(middle + half, time[-1])))
+            return Steady(span, found, float(np.median(size[first:last])), cycles)
+    return None
 
 
 def _extended(
@@ -240,10 +288,12 @@ def _peak_frequency(values: Floats, rate: float, nominal: float) -> float:
     return float(frequencies[near][np.argmax(spectrum[near])]) if near.any() else nominal
 
 
-def _demodulated(time: Floats, values: Floats, rate: float, frequency: float) -> npt.NDArray[np.complex128]:
-    """Return the complex amplitude at a frequency over `CYCLES_AVERAGED` cycles."""
+def _demodulated(
+    time: Floats, values: Floats, rate: float, frequency: float, cycles: int = CYCLES_AVERAGED
+) -> npt.NDArray[np.complex128]:
+    """Return the complex amplitude at a frequency over so many cycles."""
     carrier = np.exp(-2j * np.pi * frequency * time)
-    length = CYCLES_AVERAGED / frequency * rate
+    length = cycles / frequency * rate
     centred = values - moving_mean(values, length)
     return np.asarray(2.0 * moving_mean(centred * carrier, length), dtype=np.complex128)
 

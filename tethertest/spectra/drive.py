@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
@@ -14,14 +14,16 @@ from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Window
 from tethertest.records.lines import DriveFit
 from tethertest.signal.blocks import Blocks
+from tethertest.signal.sinusoid import SinusoidFit
 from tethertest.spectra.orders import COMPANIONS, ORDERS
 from tethertest.spectra.regression import (
     Amplitude,
     OrderFit,
     channel_blocks,
-    fit_orders,
     local_p_value,
     order_amplitudes,
+    order_sinusoids,
+    with_noise,
 )
 
 #: the drive is looked for this far from its nominal frequency, relative
@@ -35,6 +37,10 @@ POINTS_PER_RESOLUTION: Final = 8
 SIGNIFICANCE: Final = 0.01
 #: Gauss-Newton steps; the search starts within an eighth of 1/T and the error squares at each step
 STEPS: Final = 8
+#: passes over the weights of the channels: by what the fit leaves in all, then by the noise next to the line
+WEIGHTINGS: Final = 2
+#: keeps a channel without any noise from a weight without bound
+SMALLEST_VARIANCE: Final = 1e-300
 #: a step below this share of the nominal frequency ends the fit
 CONVERGED: Final = 1e-9
 #: mains frequency whose whole periods make the blocks
@@ -45,9 +51,18 @@ MAINS: Final = 50.0
 class _Tangent:
     """One channel about the current frequency: what is left, and how it would change with frequency."""
 
-    fit: OrderFit
+    blocks: Blocks
+    orders: tuple[Fraction, ...]
+    sinusoids: SinusoidFit
     slope: FloatArray  #: (b,) derivative of the model by frequency, free of the other coefficients
     variance: float  #: noise of one block at the fundamental
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Seen:
+    """What a channel shows of the drive once its frequency is fitted."""
+
+    fit: OrderFit
     fundamental: Amplitude
     p_value: float  #: against the smooth density and against the residual next to the line, the larger
 
@@ -93,24 +108,31 @@ def fit_drive(channels: Sequence[Channel], window: Window, nominal: float) -> Dr
     if not used:
         raise refusals[0] if refusals else DataError("no channel to fit the drive to", "name a channel")
     frequency = _strongest([blocks for _, blocks in used], nominal)
-    tangents: list[_Tangent] = []
-    for _ in range(STEPS):
-        tangents = [_tangent(blocks, frequency, window.start) for _, blocks in used]
-        step = _step(tangents)
-        if abs(step) < CONVERGED * nominal:
+    variances: list[float | None] = [None] * len(used)
+    for _ in range(WEIGHTINGS):
+        frequency, tangents = _settle(
+            [blocks for _, blocks in used], variances, frequency, nominal, window.start
+        )
+        fits = [with_noise(item.blocks, frequency, item.orders, item.sinusoids) for item in tangents]
+        # the noise next to the line, not that of the whole band, says what a channel is worth
+        variances = [float(fit.noise.density(frequency)[0]) * fit.blocks.rate / 2.0 for fit in fits]
+        if len(used) == 1:
             break
-        frequency = float(np.clip(frequency + step, (1.0 - SEARCH) * nominal, (1.0 + SEARCH) * nominal))
+    tangents = [
+        replace(item, variance=value) for item, value in zip(tangents, variances, strict=True) if value
+    ]
+    shown = [_seen(fit) for fit in fits]
     searched = max(1.0, 2.0 * SEARCH * nominal * window.length) * len(used)
     # a fit that ran to the end of the search climbs the skirt of a line beyond it
     at_edge = abs(abs(frequency / nominal - 1.0) - SEARCH) < CONVERGED
     seen = tuple(
         name
-        for (name, _), tangent in zip(used, tangents, strict=True)
-        if tangent.p_value * searched < SIGNIFICANCE and not at_edge
+        for (name, _), item in zip(used, shown, strict=True)
+        if item.p_value * searched < SIGNIFICANCE and not at_edge
     )
     if not seen:
-        raise _no_drive(used, tangents, frequency, nominal, searched)
-    return DriveFit(frequency, _standard_error(tangents), seen)
+        raise _no_drive(used, shown, frequency, nominal, searched)
+    return DriveFit(frequency, _standard_error(tangents, shown), seen)
 
 
 def _strongest(series: Sequence[Blocks], nominal: float) -> float:
@@ -134,11 +156,32 @@ def _strongest(series: Sequence[Blocks], nominal: float) -> float:
     return float(grid[int(np.argmax(together))])
 
 
-def _tangent(blocks: Blocks, frequency: float, origin: float) -> _Tangent:
-    fit = fit_orders(blocks, frequency, (*ORDERS, *COMPANIONS), origin)
-    design, sinusoids = fit.sinusoids.design, fit.sinusoids
+def _settle(
+    series: Sequence[Blocks],
+    variances: Sequence[float | None],
+    frequency: float,
+    nominal: float,
+    origin: float,
+) -> tuple[float, list[_Tangent]]:
+    """Return the frequency at which no channel's weighted residual asks for a step, and the last tangents."""
+    tangents: list[_Tangent] = []
+    for _ in range(STEPS):
+        tangents = [
+            _tangent(blocks, frequency, origin, variance)
+            for blocks, variance in zip(series, variances, strict=True)
+        ]
+        step = _step(tangents)
+        if abs(step) < CONVERGED * nominal:
+            break
+        frequency = float(np.clip(frequency + step, (1.0 - SEARCH) * nominal, (1.0 + SEARCH) * nominal))
+    return frequency, tangents
+
+
+def _tangent(blocks: Blocks, frequency: float, origin: float, variance: float | None) -> _Tangent:
+    orders, sinusoids = order_sinusoids(blocks, frequency, (*ORDERS, *COMPANIONS), origin)
+    design = sinusoids.design
     slope = np.zeros(blocks.time.size)
-    for index, order in enumerate(fit.orders):
+    for index, order in enumerate(orders):
         if order not in DRIVE_ORDERS:
             continue
         first = sinusoids.trend + 2 * index
@@ -146,43 +189,48 @@ def _tangent(blocks: Blocks, frequency: float, origin: float) -> _Tangent:
         a, b = sinusoids.pair(index)
         slope += 2.0 * np.pi * float(order) * (blocks.time - origin) * (b * cosine - a * sine)
     slope = sinusoids.without_trace(slope)
-    variance = float(fit.noise.density(frequency)[0]) * blocks.rate / 2.0
+    if variance is None:
+        variance = float(sinusoids.weights @ sinusoids.residuals**2) / blocks.time.size
+    return _Tangent(blocks, orders, sinusoids, slope * blocks.weights, max(variance, SMALLEST_VARIANCE))
+
+
+def _seen(fit: OrderFit) -> _Seen:
+    if FUNDAMENTAL not in fit.orders:
+        return _Seen(fit, Amplitude(0.0, 0.0, 0.0, (0.0, 0.0), 0.0, 1.0), 1.0)
     fundamental = order_amplitudes(fit, (FUNDAMENTAL,))[FUNDAMENTAL]
-    p_value = max(fundamental.p_value, local_p_value(fit, FUNDAMENTAL, fundamental))
-    return _Tangent(fit, slope * blocks.weights, variance, fundamental, p_value)
+    return _Seen(fit, fundamental, max(fundamental.p_value, local_p_value(fit, FUNDAMENTAL, fundamental)))
 
 
 def _step(tangents: Sequence[_Tangent]) -> float:
     """Return the Gauss-Newton step [Hz], channels weighted by their noise."""
-    pull = sum(float(item.slope @ item.fit.sinusoids.residuals) / item.variance for item in tangents)
+    pull = sum(float(item.slope @ item.sinusoids.residuals) / item.variance for item in tangents)
     stiffness = sum(float(item.slope @ item.slope) / item.variance for item in tangents)
     return pull / stiffness if stiffness > 0.0 else 0.0
 
 
-def _standard_error(tangents: Sequence[_Tangent]) -> float:
+def _standard_error(tangents: Sequence[_Tangent], shown: Sequence[_Seen]) -> float:
     stiffness = sum(float(item.slope @ item.slope) / item.variance for item in tangents)
     spread = 0.0
-    for item in tangents:
-        frequency = item.fit.drive
-        excess = max(1.0, item.fit.noise.excess(frequency)[0])
-        spread += item.fit.noise.variance(item.slope) * excess / item.variance**2
+    for item, seen in zip(tangents, shown, strict=True):
+        excess = max(1.0, seen.fit.noise.excess(seen.fit.drive)[0])
+        spread += seen.fit.noise.variance(item.slope) * excess / item.variance**2
     return float(np.sqrt(spread)) / stiffness
 
 
 def _no_drive(
     used: Sequence[tuple[str, Blocks]],
-    tangents: Sequence[_Tangent],
+    shown: Sequence[_Seen],
     frequency: float,
     nominal: float,
     searched: float,
 ) -> DataError:
-    best = min(range(len(used)), key=lambda index: tangents[index].p_value)
-    amplitude = tangents[best].fundamental
+    best = min(range(len(used)), key=lambda index: shown[index].p_value)
+    amplitude = shown[best].fundamental
     message = (
         f"no drive found within {SEARCH:.0%} of {nominal:.4g} Hz: the strongest line is at {frequency:.4g} "
         f"Hz in {used[best][0]!r}, amplitude {amplitude.value:.3g} at a standard error of "
         f"{amplitude.standard_error:.3g} "
-        f"(chance {min(1.0, tangents[best].p_value * searched):.2g}, needed below {SIGNIFICANCE:g})"
+        f"(chance {min(1.0, shown[best].p_value * searched):.2g}, needed below {SIGNIFICANCE:g})"
     )
     return DataError(
         message, "check the drive's nominal frequency in run.toml and that the drive was running"

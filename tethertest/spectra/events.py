@@ -34,7 +34,7 @@ SNAP_SPAN: Final = 0.25
 
 def find_events(
     channel: Channel,
-    zero_uncertainty: float = ZERO_UNCERTAINTY,
+    zero_uncertainty: float | None = None,
     *,
     cutoff: float = CUTOFF,
     shortest: float = SHORTEST,
@@ -50,8 +50,9 @@ def find_events(
     ----------
     channel : Channel
         Total tension [N], measured or replayed, over any span.
-    zero_uncertainty : float
+    zero_uncertainty : float, optional
         Standard uncertainty of the channel's zero [N]; the low-passed noise is added to it in quadrature.
+        Where absent, `ZERO_UNCERTAINTY` and the channel's own uncertainty of a reading.
     cutoff : float
         Of the low-pass [Hz]; at most 0.4 of the channel's rate is used.
     shortest : float
@@ -75,6 +76,8 @@ def find_events(
         raise DataError(message, "look for slack in a load cell's channel")
     if channel.time.size < 3:
         return ()
+    if zero_uncertainty is None:
+        zero_uncertainty = float(np.hypot(ZERO_UNCERTAINTY, channel.offset_uncertainty))
     limit = min(cutoff, 0.4 * channel.rate)
     smooth = low_passed(filled(channel), channel.rate, limit)
     zero = float(np.hypot(zero_uncertainty, channel.noise * np.sqrt(2.0 * limit / channel.rate)))

@@ -9,8 +9,9 @@ from typing import Final
 import numpy as np
 
 from tethertest.signal.blocks import Blocks
+from tethertest.signal.sinusoid import sinusoid_pair
 from tethertest.spectra.orders import RESOLUTION
-from tethertest.spectra.regression import OrderFit, fit_orders
+from tethertest.spectra.regression import OrderFit, fit_orders, with_noise
 
 #: an ordinate this many times the smooth density is a line (chance 1e-13)
 STRONG: Final = 30.0
@@ -42,13 +43,12 @@ def fit_orders_and_free_lines(
         Of the orders; the free lines are among its sinusoids.
     """
     fit = fit_orders(blocks, drive, orders, origin)
-    free: list[float] = []
-    while len(free) < MOST:
+    for _ in range(MOST):
         frequency = _strongest_left(fit)
         if frequency is None:
             break
-        free.append(frequency)
-        fit = fit_orders(blocks, drive, orders, origin, free)
+        sinusoids = fit.sinusoids.extended(frequency, sinusoid_pair(blocks, frequency, origin))
+        fit = with_noise(blocks, drive, fit.orders, sinusoids)
     return fit
 
 
@@ -63,9 +63,9 @@ def _strongest_left(fit: OrderFit) -> float | None:
         return None
     near = float(noise.frequency[best])
     trial = near + np.arange(-ZERO_PADDING, ZERO_PADDING + 1) / (ZERO_PADDING * length)
-    time = fit.blocks.time - fit.sinusoids.origin
     residuals = fit.sinusoids.residuals * fit.blocks.weights
-    power = np.abs(np.exp(-2j * np.pi * trial[:, None] * time[None, :]) @ residuals) ** 2
+    grid, origin = fit.blocks.grid, fit.sinusoids.origin
+    power = np.array([abs(np.vdot(grid.rotating(float(at), origin), residuals)) ** 2 for at in trial])
     peak = int(np.clip(np.argmax(power), 1, trial.size - 2))
     left, middle, right = power[peak - 1 : peak + 2]
     bend = float(left - 2.0 * middle + right)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final
 
@@ -11,29 +12,30 @@ import numpy as np
 from tethertest.errors import DataError
 from tethertest.records.channel import Channel, Window
 from tethertest.records.lines import ChannelLines, DriveFit, Expectation, Line, LineVerdict
+from tethertest.spectra.course import course, phase_wander
+from tethertest.spectra.crank_angle import SMALLEST_WANDER, CrankAngle, crank_angle
 from tethertest.spectra.free_lines import fit_orders_and_free_lines
+from tethertest.spectra.holm import holm
+from tethertest.spectra.leaks import folded_order, free_sources, leakage_floor
+from tethertest.spectra.loose import SEGMENTS, loosen
 from tethertest.spectra.orders import COMPANIONS, ORDERS, RESOLUTION, length_to_resolve
 from tethertest.spectra.regression import (
     Amplitude,
     OrderFit,
     channel_blocks,
-    fit_orders,
     local_p_value,
     order_amplitudes,
 )
 from tethertest.spectra.stroboscope import stroboscopic_section
 from tethertest.spectra.tracking import Tracking, track, unsteadiness
-from tethertest.spectra.verdicts import NATURAL_RESOLUTION, Evidence, judge
+from tethertest.spectra.verdicts import NATURAL_RESOLUTION, Evidence, judge, length_needed
 
 #: chance of one false line in a channel, over all orders tried (Holm)
 SIGNIFICANCE: Final = 0.01
 #: lines below this share of the strongest one are rounding and interpolation, however clean the record
 SMALLEST_RATIO: Final = 1e-5
-#: highest order of the drive that is thought of as folding back from above half the sampling rate: the kinks
-#: of a tension that snaps taut carry that far
-HIGHEST_FOLDED: Final = 200
-#: the highest orders in the band are this many times larger than what may have folded back from beyond it
-CARRIED_RATIO: Final = 3.0
+#: a channel's own wander is followed if that leaves less than this share of what was left
+OWN_GAIN: Final = 0.9
 FUNDAMENTAL: Final = Fraction(1)
 
 
@@ -44,6 +46,7 @@ def find_lines(
     expectation: Expectation,
     orders: Sequence[Fraction] = ORDERS,
     significance: float = SIGNIFICANCE,
+    crank: CrankAngle | None = None,
 ) -> ChannelLines:
     """Look for orders of the drive in one channel.
 
@@ -61,6 +64,9 @@ def find_lines(
         Orders wanted. Those above what the channel's rate carries are left out.
     significance : float
         Chance of any false line among the orders tried.
+    crank : CrankAngle, optional
+        The drive's angle from a measured motion. Where its speed varies, orders are those of the crank's
+        angle; without it a channel whose own order 1 wanders is put on the clock of that.
 
     Returns
     -------
@@ -76,9 +82,57 @@ def find_lines(
     ----------
     S. Holm, Scand. J. Statist. 6 (1979) 65-70.
     """
+
+    def search_on(pace: CrankAngle | None) -> _Search:
+        if pace is None:
+            return _search(channel, window, drive, expectation, orders, significance)
+        turned = Window(min(window.start, pace.turned[0]), max(window.stop, pace.turned[-1]), window.reason)
+        steadied = pace.steadied(channel)
+        return _search(steadied, turned, drive, expectation, orders, significance, origin=window.start)
+
+    search = search_on(crank if crank is not None and crank.varies else None)
+    if crank is None and (own := _own_pace(search, channel, window, drive)) is not None:
+        followed = search_on(own)
+        # a free line beats with order 1 and feigns wander, but following it explains nothing
+        if followed.left < OWN_GAIN * search.left:
+            crank, search = own, followed
+    varies = crank is not None and crank.varies
     part = channel.between(window.start, window.stop)
+    lines = _lines(search, part, drive, orders, expectation, local_always=varies)
+    used = int(np.count_nonzero(part.usable))
+    variation = crank.speed_variation if crank is not None and varies else 0.0
+    return ChannelLines(channel.name, channel.unit, window, lines, used, part.time.size - used, variation)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Search:
+    """The orders of one channel, fitted and tested."""
+
+    fit: OrderFit
+    amplitudes: dict[Fraction, Amplitude]
+    adjusted: dict[Fraction, float]  #: p-values after Holm's correction
+    significant: set[Fraction]
+    level: float  #: chance of any false line
+
+    @property
+    def left(self) -> float:
+        """Mean square of what the fit leaves."""
+        weights, residuals = self.fit.sinusoids.weights, self.fit.sinusoids.residuals
+        return float(weights @ residuals**2 / weights.sum())
+
+
+def _search(
+    channel: Channel,
+    window: Window,
+    drive: DriveFit,
+    expectation: Expectation,
+    orders: Sequence[Fraction],
+    significance: float,
+    origin: float | None = None,
+) -> _Search:
     blocks = channel_blocks(channel, window, drive.frequency, expectation.mains)
-    fit = fit_orders_and_free_lines(blocks, drive.frequency, (*orders, *COMPANIONS), window.start)
+    start = window.start if origin is None else origin
+    fit = fit_orders_and_free_lines(blocks, drive.frequency, (*orders, *COMPANIONS), start)
     tried = tuple(order for order in orders if order in fit.orders)
     if FUNDAMENTAL not in tried:
         message = f"channel {channel.name!r}: order 1 is not among the orders tried"
@@ -89,54 +143,68 @@ def find_lines(
     significant = {
         order for order in tried if adjusted[order] <= significance and amplitudes[order].value > smallest
     }
+    return _Search(fit, amplitudes, adjusted, significant, significance)
+
+
+def _own_pace(search: _Search, channel: Channel, window: Window, drive: DriveFit) -> CrankAngle | None:
+    """Return the crank's angle by the channel's own order 1, if that wanders."""
+    if FUNDAMENTAL not in search.significant:
+        return None
+    fit = search.fit
+    variance = float(fit.noise.density(drive.frequency)[0]) * fit.blocks.rate / 2.0
+    followed = course(loosen(fit, FUNDAMENTAL), variance, window.start, cycles=1.0, most=SEGMENTS // 2)
+    if phase_wander(followed) < SMALLEST_WANDER:
+        return None
+    pace = crank_angle(channel, window, drive)
+    return pace if pace.varies else None
+
+
+def _lines(
+    search: _Search,
+    part: Channel,
+    drive: DriveFit,
+    orders: Sequence[Fraction],
+    expectation: Expectation,
+    *,
+    local_always: bool,
+) -> tuple[Line, ...]:
+    fit, amplitudes, significant = search.fit, search.amplitudes, search.significant
     tracked = _tracked(fit, significant, drive, expectation)
-    sources = _sources(fit, amplitudes, significant, tracked, significance)
+    sources = free_sources(fit, amplitudes, significant, tracked, search.level)
     broken = any(order.denominator != 1 for order in significant)
     changes = {order: unsteadiness(fit, order) for order in significant if broken and order.denominator == 1}
     lines = []
     for order in sorted(orders):
         frequency = float(order) * drive.frequency
-        if order not in tried:
+        if order not in amplitudes:
             if frequency < 0.5 * part.rate:
                 lines.append(_unresolved(order, orders, fit))
             continue
-        verdict, reason = judge(
-            Evidence(
-                order=order,
-                frequency=frequency,
-                amplitude=amplitudes[order],
-                fundamental=amplitudes[FUNDAMENTAL].value,
-                unit="" if channel.unit == "1" else channel.unit,
-                adjusted=adjusted[order],
-                significant=order in significant,
-                is_input=channel.kind == "displacement" and channel.at == 0.0,
-                leakage_floor=_leakage_floor(fit, order, amplitudes, changes),
-                nearby_peak=fit.noise.nearby_peak(frequency),
-                local_p_value=local_p_value(fit, order, amplitudes[order]),
-                length=blocks.length,
-                rate=part.rate,
-                alias=_alias(fit, order, amplitudes[order], part.rate) if order in tracked else None,
-                tracking=tracked.get(order),
-                source=sources.get(order),
-                section=stroboscopic_section(blocks, drive.frequency)
-                if order == Fraction(1, 2) and order in significant
-                else None,
-                expectation=expectation,
-            )
+        half = order == Fraction(1, 2) and order in significant
+        evidence = Evidence(
+            order=order,
+            frequency=frequency,
+            amplitude=amplitudes[order],
+            fundamental=amplitudes[FUNDAMENTAL].value,
+            unit="" if part.unit == "1" else part.unit,
+            adjusted=search.adjusted[order],
+            significant=order in significant,
+            is_input=part.kind == "displacement" and part.at == 0.0,
+            leakage_floor=leakage_floor(fit, order, amplitudes, changes),
+            nearby_peak=fit.noise.nearby_peak(frequency),
+            local_p_value=local_p_value(fit, order, amplitudes[order], always=local_always),
+            length=fit.blocks.length,
+            rate=part.rate,
+            alias=folded_order(fit, order, amplitudes[order], part.rate) if order in tracked else None,
+            tracking=tracked.get(order),
+            source=sources.get(order),
+            section=stroboscopic_section(fit.blocks, drive.frequency) if half else None,
+            expectation=expectation,
         )
-        lines.append(_line(order, frequency, amplitudes[order], verdict, reason))
-    used = int(np.count_nonzero(part.usable))
-    return ChannelLines(channel.name, channel.unit, window, tuple(lines), used, part.time.size - used)
-
-
-def holm(p_values: Mapping[Fraction, float]) -> dict[Fraction, float]:
-    """Return p-values adjusted for the number of orders tried, by Holm's step-down rule."""
-    adjusted: dict[Fraction, float] = {}
-    largest = 0.0
-    for rank, order in enumerate(sorted(p_values, key=lambda order: p_values[order])):
-        largest = max(largest, min(1.0, (len(p_values) - rank) * p_values[order]))
-        adjusted[order] = largest
-    return adjusted
+        verdict, reason = judge(evidence)
+        needed = length_needed(evidence) if verdict is LineVerdict.NOT_RESOLVABLE else None
+        lines.append(_line(evidence, verdict, reason, needed))
+    return tuple(lines)
 
 
 def _tracked(
@@ -157,79 +225,11 @@ def _tracked(
     }
 
 
-def _sources(
-    fit: OrderFit,
-    amplitudes: Mapping[Fraction, Amplitude],
-    significant: set[Fraction],
-    tracked: Mapping[Fraction, Tracking],
-    significance: float,
-) -> dict[Fraction, float]:
-    """Return the broken orders that vanish once the strongest free line is fitted at its own frequency."""
-    broken = [order for order in significant if order.denominator != 1]
-    if len(broken) < 2:
-        return {}
-    strongest = max(broken, key=lambda order: amplitudes[order].f_value)
-    if tracked[strongest].locked:
-        return {}
-    frequency = tracked[strongest].frequency
-    orders = tuple(order for order in fit.orders if order != strongest)
-    free = (*fit.sinusoids.frequencies[len(fit.orders) :], frequency)
-    refit = fit_orders(fit.blocks, fit.drive, orders, fit.sinusoids.origin, free)
-    rest = tuple(order for order in amplitudes if order != strongest and order in refit.orders)
-    adjusted = holm({order: item.p_value for order, item in order_amplitudes(refit, rest).items()})
-    return {
-        order: frequency for order in broken if order != strongest and adjusted.get(order, 1.0) > significance
-    }
-
-
-def _leakage_floor(
-    fit: OrderFit,
-    order: Fraction,
-    amplitudes: Mapping[Fraction, Amplitude],
-    changes: Mapping[Fraction, float],
-) -> float:
-    """Return the amplitude that whole orders, not quite steady, leave at another order.
-
-    A line of amplitude A that changes by a share c over the record leaks ``A c / (pi T |df|)`` to a frequency
-    df away that the record holds a whole number of cycles of.
-    """
-    own = float(order) * fit.drive
-    leaks = (
-        amplitudes[whole].value * change / (np.pi * fit.blocks.length * abs(float(whole) * fit.drive - own))
-        for whole, change in changes.items()
-        if whole != order
-    )
-    return float(sum(leaks))
-
-
-def _alias(fit: OrderFit, order: Fraction, amplitude: Amplitude, rate: float) -> Fraction | None:
-    """Return the order above half the sampling rate that folds onto this one, if the series has such orders.
-
-    It has where the orders fitted as companions, next below what the rate carries, are clearly larger than
-    the line.
-    """
-    own = float(order) * fit.drive
-    for denominator in (1, 2):
-        carried = [
-            fit.sinusoids.amplitude(index)
-            for index, companion in enumerate(fit.orders)
-            if companion in COMPANIONS and companion.denominator == denominator
-        ]
-        if max(carried, default=0.0) < CARRIED_RATIO * amplitude.value:
-            continue
-        first = int(0.5 * rate / fit.drive * denominator) + 1
-        for numerator in range(first, HIGHEST_FOLDED * denominator + 1):
-            folding = numerator * fit.drive / denominator
-            folded = abs(folding - rate * round(folding / rate))
-            if abs(folded - own) * fit.blocks.length < RESOLUTION:
-                return Fraction(numerator, denominator)
-    return None
-
-
-def _line(order: Fraction, frequency: float, amplitude: Amplitude, verdict: LineVerdict, reason: str) -> Line:
+def _line(evidence: Evidence, verdict: LineVerdict, reason: str, needed: float | None) -> Line:
+    amplitude = evidence.amplitude
     return Line(
-        str(order),
-        frequency,
+        str(evidence.order),
+        evidence.frequency,
         amplitude.value,
         amplitude.phase,
         amplitude.interval,
@@ -237,6 +237,8 @@ def _line(order: Fraction, frequency: float, amplitude: Amplitude, verdict: Line
         amplitude.p_value,
         verdict,
         reason,
+        None if evidence.tracking is None else evidence.tracking.course,
+        needed,
     )
 
 
@@ -255,4 +257,5 @@ def _unresolved(order: Fraction, orders: Sequence[Fraction], fit: OrderFit) -> L
         LineVerdict.NOT_RESOLVABLE,
         f"{fit.blocks.length:.4g} s cannot tell this order from its neighbours or from drift; {needed:.1f} s "
         f"would (T |df| >= {RESOLUTION:g})",
+        length_needed=needed,
     )

@@ -14,8 +14,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from tethertest.records.arrays import FloatArray
+
+IndexArray = npt.NDArray[np.intp]
 
 #: degree of the polynomial in log f: follows white, AR(1) and 1/f noise and their sums
 DEGREE = 3
@@ -27,12 +30,19 @@ OUTLIER = 12.0
 HANN_OVERLAP = 1.944
 #: passes of the fit; each is one weighted least squares step
 PASSES = 25
+#: a step of the polynomial below this ends the fit: a ten-thousandth of the density
+CONVERGED = 1e-4
 #: ordinates on either side of a line that make its local background
 NEIGHBOURS = 8
+#: chance that noise alone shows a left-over line next to an order
+PEAK_CHANCE = 0.005
 #: a term of the polynomial needs this many ordinates
 ORDINATES_PER_TERM = 10
 #: keeps the normal matrix regular where every ordinate but a few is a line
 SMALLEST_PIVOT = 1e-9
+#: twice the log-likelihood that a term must gain: chance passes this once in 22, Akaike's 2 once in 6, and
+#: a density bent by chance calls false lines
+TERM_PRICE = 4.0
 #: an ordinate of which fitted lines leave less than this is not used
 LEAST_SHARE = 0.5
 #: density that double precision leaves of a series with unit variance at unit rate
@@ -72,10 +82,12 @@ class NoiseSpectrum:
         """Return the covariance (k, 2, 2) of each pair of rows of ``influence (2k, b) @ noise``."""
         count = influence.shape[1]
         size = 1 << int(np.ceil(np.log2(2 * count)))  # without wrap-around
-        pairs = np.fft.rfft(influence, size, axis=1).reshape(influence.shape[0] // 2, 2, -1)
         power = self.density(_axis(size, self.rate)) * (self.rate / size)
         power[[0, -1]] *= 0.5
-        product: FloatArray = np.real(np.einsum("kif,f,kjf->kij", pairs, power, pairs.conj(), optimize=True))
+        scaled = np.fft.rfft(np.ascontiguousarray(influence), size) * np.sqrt(power)
+        pairs = scaled.view(np.float64).reshape(influence.shape[0] // 2, 2, -1)
+        # sums of squares and products of real and imaginary parts; einsum wakes no threads
+        product: FloatArray = np.einsum("kif,kjf->kij", pairs, pairs)
         return product
 
     def variance(self, row: FloatArray) -> float:
@@ -88,22 +100,36 @@ class NoiseSpectrum:
         From ordinates without taper: a start-up that reaches into the window spreads over them as it does
         over the fitted lines, while a taper would hide it.
         """
-        clear = np.flatnonzero(self.plain_share > LEAST_SHARE)
-        near = clear[np.argsort(np.abs(self.frequency[clear] - frequency))[: 2 * NEIGHBOURS]]
+        near = self._nearest(frequency, 2 * NEIGHBOURS)
         if near.size < NEIGHBOURS:
             return 1.0, float(2 * NEIGHBOURS)
         expected = self.density(self.frequency[near]) * self.plain_share[near]
         return float(np.mean(self.plain[near] / expected)), 2.0 * near.size
 
     def nearby_peak(self, frequency: float) -> float:
-        """Return the amplitude of the strongest left-over ordinate next to a frequency, without taper."""
-        clear = np.flatnonzero(self.plain_share > LEAST_SHARE)
-        near = clear[np.argsort(np.abs(self.frequency[clear] - frequency))[:NEIGHBOURS]]
+        """Return the amplitude of the strongest left-over line next to a frequency, zero where there is none.
+
+        An ordinate that the background explains is no line: one in `PEAK_CHANCE` of records has one there by
+        chance.
+        """
+        near = self._nearest(frequency, NEIGHBOURS)
         if near.size == 0:
+            return 0.0
+        power = self.plain[near] / self.plain_share[near]
+        strongest = int(np.argmax(power))
+        least = float(self.density(self.frequency[near[strongest]])[0]) * np.log(near.size / PEAK_CHANCE)
+        if power[strongest] < least:
             return 0.0
         # an ordinate of a cosine A in a record T is A^2 T / 2, and the ordinates stand 1/T apart
         resolution = float(self.frequency[1] - self.frequency[0])
-        return float(np.sqrt(2.0 * resolution * np.max(self.plain[near] / self.plain_share[near])))
+        return float(np.sqrt(2.0 * resolution * power[strongest]))
+
+    def _nearest(self, frequency: float, count: int) -> IndexArray:
+        """Return the ordinates next to a frequency of which fitted lines have left enough."""
+        clear = np.flatnonzero(self.plain_share > LEAST_SHARE)
+        middle = int(np.searchsorted(self.frequency[clear], frequency))
+        some = clear[max(middle - count, 0) : middle + count]
+        return some[np.argsort(np.abs(self.frequency[some] - frequency))[:count]]
 
 
 def noise_spectrum(
@@ -192,36 +218,35 @@ def _choose_density(
     """
     most = min(DEGREE + 1, max(1, int(np.count_nonzero(taken)) // ORDINATES_PER_TERM))
     best = np.inf, np.zeros(1), np.eye(1)
+    powers = _basis(frequency, frequency, most)
+    # mean of the logarithm of an exponential variable is -gamma
+    polynomial = np.array([np.log(periodogram)[taken > 0.0].mean() + np.euler_gamma])
     for terms in range(1, most + 1):
-        basis = _basis(frequency, frequency, terms)
-        polynomial, inverse = _gamma_regression(basis, periodogram, taken)
+        basis = powers[:, :terms]
+        start = np.append(polynomial, np.zeros(terms - polynomial.size))
+        polynomial, inverse = _gamma_regression(basis, periodogram, taken, start)
         logarithm = basis @ polynomial
         # an ordinate that is a line counts as a bad fit, but not without bound
         misfit = logarithm + np.minimum(periodogram / np.exp(logarithm), OUTLIER)
-        criterion = 2.0 * float(taken @ misfit) / HANN_OVERLAP + 2.0 * terms
+        criterion = 2.0 * float(taken @ misfit) / HANN_OVERLAP + TERM_PRICE * terms
         if criterion < best[0]:
             best = criterion, polynomial, inverse
     return best[1], best[2]
 
 
 def _gamma_regression(
-    basis: FloatArray, ordinates: FloatArray, taken: FloatArray
+    basis: FloatArray, ordinates: FloatArray, taken: FloatArray, start: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Maximise Whittle's likelihood by Fisher scoring, setting lines aside."""
-    use = taken > 0.0
-    # mean of the logarithm of an exponential variable is -gamma
-    target = np.log(ordinates) + np.euler_gamma
-    rows = basis[use]
-    polynomial = np.asarray(np.linalg.solve(rows.T @ rows, rows.T @ target[use]), dtype=np.float64)
+    polynomial = start
     inverse = np.eye(basis.shape[1])
     for _ in range(PASSES):
-        ratio = ordinates / np.exp(basis @ polynomial)
-        use = (taken > 0.0) & (ratio < OUTLIER)
-        rows = basis[use]
-        normal = rows.T @ rows + SMALLEST_PIVOT * np.eye(rows.shape[1])
-        inverse = np.asarray(np.linalg.inv(normal), dtype=np.float64)
-        step = inverse @ (rows.T @ (ratio[use] - 1.0))
+        ratio = ordinates * np.exp(-(basis @ polynomial))
+        use = taken * (ratio < OUTLIER)
+        normal = np.einsum("bi,bj,b->ij", basis, basis, use)
+        inverse = np.asarray(np.linalg.inv(normal + SMALLEST_PIVOT * np.eye(start.size)), dtype=np.float64)
+        step = inverse @ np.einsum("bi,b->i", basis, use * (ratio - 1.0))
         polynomial = polynomial + np.clip(step, -1.0, 1.0)
-        if float(np.max(np.abs(step))) < 1e-6:
+        if float(np.max(np.abs(step))) < CONVERGED:
             break
     return polynomial, inverse

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import lru_cache
 from typing import Final
 
 #: orders that get a line and a verdict; Holm's correction counts them
@@ -14,6 +15,8 @@ COMPANIONS: Final = tuple(Fraction(text) for text in ("7/2", "9/2", "6", "7", "8
 RESOLUTION: Final = 1.0
 #: and the lowest this many 1/T from zero, where the drift is
 LOWEST_CYCLES: Final = 2.0
+#: relative; keeps orders that are apart by exactly the resolution
+ROUND_OFF: Final = 1e-9
 
 
 def resolvable_orders(
@@ -37,14 +40,20 @@ def resolvable_orders(
     tuple of Fraction
         In rising order.
     """
-    accepted: list[Fraction] = []
-    for order in sorted(orders, key=lambda order: (order.denominator, order)):
-        own = float(order) * frequency
-        apart = min((abs(order - other) for other in accepted), default=order)
-        clear = float(apart) * frequency * length >= RESOLUTION and own * length >= LOWEST_CYCLES
-        if clear and own < highest:
-            accepted.append(order)
-    return tuple(sorted(accepted))
+    periods = frequency * length * (1.0 + ROUND_OFF)
+    accepted: dict[float, Fraction] = {}
+    for order in _by_preference(tuple(orders)):
+        place = float(order)
+        apart = min((abs(place - other) for other in accepted), default=place)
+        clear = apart * periods >= RESOLUTION and place * periods >= LOWEST_CYCLES
+        if clear and place * frequency < highest:
+            accepted[place] = order
+    return tuple(accepted[place] for place in sorted(accepted))
+
+
+@lru_cache(maxsize=32)
+def _by_preference(orders: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+    return tuple(sorted(orders, key=lambda order: (order.denominator, order)))
 
 
 def length_to_resolve(order: Fraction, orders: Sequence[Fraction], frequency: float) -> float:

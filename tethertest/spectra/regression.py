@@ -133,6 +133,14 @@ def fit_orders(
     OrderFit
         With the orders that were fitted.
     """
+    fitted, sinusoids = order_sinusoids(blocks, drive, orders, origin, free)
+    return with_noise(blocks, drive, fitted, sinusoids)
+
+
+def order_sinusoids(
+    blocks: Blocks, drive: float, orders: Sequence[Fraction], origin: float, free: Sequence[float] = ()
+) -> tuple[tuple[Fraction, ...], SinusoidFit]:
+    """Fit offset, drift and orders alone; arguments as for `fit_orders`. Returns the orders fitted too."""
     fitted = resolvable_orders(orders, drive, blocks.length, HIGHEST_SHARE * blocks.rate)
     frequencies = np.array([*(float(order) * drive for order in fitted), *free])
     filled, needed = np.count_nonzero(blocks.weights), 2 * frequencies.size + TREND_DEGREE + 1
@@ -141,10 +149,16 @@ def fit_orders(
             f"the usable samples fill {filled} blocks of {blocks.step:.3g} s, too few for {needed} numbers"
         )
         raise DataError(message, "choose another window, or mend the channel that lacks its samples")
-    sinusoids = fit_sinusoids(blocks, frequencies, origin, TREND_DEGREE)
+    return fitted, fit_sinusoids(blocks, frequencies, origin, TREND_DEGREE)
+
+
+def with_noise(
+    blocks: Blocks, drive: float, orders: tuple[Fraction, ...], sinusoids: SinusoidFit
+) -> OrderFit:
+    """Return fitted orders with the density of what they leave."""
     scale = float(np.sqrt(np.mean(blocks.values**2)))
-    noise = noise_spectrum(sinusoids.residuals, blocks.weights, blocks.rate, frequencies, scale)
-    return OrderFit(blocks, drive, fitted, sinusoids, noise)
+    noise = noise_spectrum(sinusoids.residuals, blocks.weights, blocks.rate, sinusoids.frequencies, scale)
+    return OrderFit(blocks, drive, orders, sinusoids, noise)
 
 
 def order_amplitudes(fit: OrderFit, orders: Sequence[Fraction]) -> dict[Fraction, Amplitude]:
@@ -188,9 +202,17 @@ def order_amplitudes(fit: OrderFit, orders: Sequence[Fraction]) -> dict[Fraction
     return amplitudes
 
 
-def local_p_value(fit: OrderFit, order: Fraction, amplitude: Amplitude) -> float:
-    """Return the p-value of the F test against the residual next to the line."""
-    ratio, freedom = fit.noise.excess(float(order) * fit.drive)
+def local_p_value(fit: OrderFit, order: Fraction, amplitude: Amplitude, *, always: bool = False) -> float:
+    """Return the p-value of the F test against the residual next to the line.
+
+    Where that is not clearly higher than the smooth density, the density with its many more degrees of
+    freedom is the better reference and stands, unless the residual is asked for `always`: as where the drive
+    wanders, whose skirts no smooth density follows.
+    """
+    frequency = float(order) * fit.drive
+    ratio, freedom = fit.noise.excess(frequency)
+    if not always and believed_excess(fit.noise, frequency) == 1.0:
+        ratio, freedom = 1.0, fit.noise.freedom(frequency)
     return float((1.0 + 2.0 * amplitude.f_value / ratio / freedom) ** (-0.5 * freedom))
 
 

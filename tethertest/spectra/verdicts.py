@@ -11,12 +11,18 @@ from tethertest.records.response import NaturalFrequency
 from tethertest.spectra.inputs import explain_by_input
 from tethertest.spectra.regression import Amplitude, stands_out
 from tethertest.spectra.stroboscope import Section
-from tethertest.spectra.tracking import GATE, Tracking
+from tethertest.spectra.tracking import GATE, LOOSE_CYCLES, Tracking
 
 #: a line and a natural frequency are told apart from T |df| = 2 on
 NATURAL_RESOLUTION: Final = 2.0
 #: a line must stand out of the residual next to it at this chance: about Holm's level for the weakest of ten
 LEAKAGE_CHANCE: Final = 0.002
+#: no record of any length tells frequencies apart that differ by less than this share
+SAME: Final = 1e-6
+#: a drive this near, relative, to twice a natural frequency can excite it parametrically: tongues of the
+#: Mathieu equation are about as wide as the relative change of stiffness, and a taut cable's tension changes
+#: by a tenth
+PARAMETRIC_REACH: Final = 0.1
 #: multiples of the mains frequency that a logger picks up
 MAINS_MULTIPLES: Final = (1, 2, 3)
 #: amplitude at which a record that long sees a locked line nine times in ten, in standard errors
@@ -171,6 +177,19 @@ def _broken_order(evidence: Evidence) -> Judged:
     )
     if evidence.is_input:
         return LineVerdict.INPUT_BORNE, f"the bottom motion itself has it, {reason}"
+    if (natural := _parametric(evidence)) is not None:
+        reason += (
+            f"; parametric resonance: the drive is near twice the natural frequency {natural.name!r} "
+            f"({natural.frequency:.4g} Hz)"
+        )
+    elif not evidence.expectation.natural_frequencies:
+        reach = max(GATE * tracking.frequency_error, LOOSE_CYCLES / evidence.length)
+        reason += (
+            f"; no natural frequency was stated: one within {reach:.2g} Hz of the line, undamped, would look "
+            "the same"
+        )
+    second = tracking.second_opinion
+    reason += f"; multitaper F = {second.f_value:.3g} (p = {second.p_value:.2g})"
     if evidence.section is not None:
         reason += f"; stroboscopic section D1/D2 = {evidence.section.ratio:.3g}"
     return LineVerdict.SUBHARMONIC, f"not in the input, {reason}"
@@ -198,14 +217,40 @@ def _nearest(evidence: Evidence) -> NaturalFrequency | None:
     return nearest if apart < NATURAL_RESOLUTION else None
 
 
+def length_needed(evidence: Evidence) -> float | None:
+    """Return the record length [s] that tells the line from the nearest natural frequency, if any would."""
+    near = _nearest(evidence)
+    if near is None:
+        return None
+    apart = abs(near.frequency - evidence.frequency)
+    return None if apart < SAME * evidence.frequency else NATURAL_RESOLUTION / apart
+
+
 def _too_short(evidence: Evidence, near: NaturalFrequency) -> str:
     apart = abs(near.frequency - evidence.frequency)
     where = f"{apart:.3g} Hz from the natural frequency {near.name!r} ({near.frequency:.4g} Hz)"
-    # below a millionth of the frequency no record of any length would do
-    if apart < 1e-6 * evidence.frequency:
-        return f"{where}: no record length tells them apart, change the drive frequency"
-    needed = NATURAL_RESOLUTION / apart
-    return f"{where}: {evidence.length:.3g} s cannot tell them apart, {needed:.0f} s would (T |df| >= 2)"
+    needed = length_needed(evidence)
+    if needed is None:
+        short = f"{where}: no record length tells them apart, change the drive frequency"
+    else:
+        short = f"{where}: {evidence.length:.3g} s cannot tell them apart, {needed:.0f} s would (T |df| >= 2)"
+    if _parametric(evidence) is None:
+        return short
+    return (
+        f"{short}; the drive is near twice this frequency, so that a parametric resonance would look the same"
+    )
+
+
+def _parametric(evidence: Evidence) -> NaturalFrequency | None:
+    """Return the natural frequency that the drive is near twice of, for the order 1/2."""
+    if evidence.order != Fraction(1, 2):
+        return None
+    near = [
+        natural
+        for natural in evidence.expectation.natural_frequencies
+        if abs(natural.frequency - evidence.frequency) <= PARAMETRIC_REACH * evidence.frequency
+    ]
+    return min(near, key=lambda natural: abs(natural.frequency - evidence.frequency), default=None)
 
 
 def _free(evidence: Evidence, tracking: Tracking) -> Judged:

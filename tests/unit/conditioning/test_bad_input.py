@@ -41,7 +41,7 @@ def test_two_columns_for_one_sensor(bench):
     assert "both claim" in refused(with_channels(bench, channels), bench.logs(), bench.guide).problem
 
 
-@pytest.mark.parametrize("unit", ["mm", "furlongs", "", "V"])
+@pytest.mark.parametrize("unit", ["mm", "furlongs", ""])
 def test_wrong_unknown_or_absent_unit_of_a_load_cell(bench, unit):
     bench.units["F_top"] = unit
     error = refused(bench.run, bench.logs(), bench.guide)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tethertest.conditioning import condition
+from tethertest.conditioning.clocks import HAND_ERROR
 from tethertest.records.run import ClockOffset, Override, Windows
 
 
@@ -56,7 +57,17 @@ def test_offset_by_hand_wins(bench):
     fit = conditioned.clocks[1]
     assert (fit.offset, fit.drift) == (0.5, 0.0)
     assert "marker tap" in fit.method
+    assert fit.offset_error == HAND_ERROR
+    assert "assumed" in fit.method
     assert [item.severity for item in conditioned.findings if item.kind == "clock_override"] == ["note"]
+
+
+def test_an_offset_by_hand_carries_the_error_that_it_is_given(bench):
+    override = Override({"interrogator": ClockOffset(0.5, "marker tap", 2e-3)})
+    fit = condition(bench.with_file(override=override), bench.logs(), bench.guide).clocks[1]
+    assert fit.offset_error == 2e-3
+    assert "+/- 2 ms" in fit.method
+    assert "assumed" not in fit.method
 
 
 def test_clock_without_anything_to_compare_is_fatal(bench):

@@ -72,6 +72,7 @@ channels = { F_top = "tension_top" }
 [windows]
 rest_before = ["0 s", "5 s"]
 steady = ["20 s", "85 s"]
+reason = "the platform was touched before"
 
 [[exclude]]
 channel = "tension_top"

@@ -52,6 +52,18 @@ MISTAKES = {
         "did you mean 'tension_top'",
     ),
     "exclusion without reason": ('reason = "rig was touched"\n', "", "exclude[1].reason", "is missing"),
+    "windows without reason": (
+        'reason = "the platform was touched before"\n',
+        "",
+        "windows.reason",
+        "windows set by hand need it",
+    ),
+    "error of an offset below zero": (
+        "[windows]",
+        '[override.clock_offset]\ndaq = { value = "1 s", reason = "tap", error = "-1 ms" }\n[windows]',
+        "override.clock_offset.daq.error",
+        "more than 0 s",
+    ),
     "log twice": (
         "[windows]",
         '[[log]]\nfile = "tension.csv"\nclock = "daq"\n[windows]',

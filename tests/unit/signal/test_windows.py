@@ -87,3 +87,15 @@ def test_window_starts_when_a_subharmonic_has_grown():
     assert (35.0 - settled.span[0]) * 8.0 == pytest.approx(settled.cycles)
     slow = Steady((5.0, 35.0), 0.3, 0.1, 9)
     assert settled_from(response, slow) is slow
+
+
+def test_three_cycles_between_long_ramps_are_found_by_their_repeating():
+    time = np.arange(0.0, 18.0, 1.0 / 256.0)
+    envelope = np.interp(np.floor(time / 2.0), [0, 1, 2, 4, 5, 6, 7, 8], [0.4, 0.55, 1, 1, 0.8, 0.5, 0.2, 0])
+    values = envelope * np.sin(np.pi * time) + np.random.default_rng(8).normal(0.0, 1e-4, time.size)
+    steady = find_steady(Record(time, values, np.ones(time.size, bool), rate=256.0), 0.5)
+    assert steady.cycles == 3
+    assert steady.span == pytest.approx((4.0, 10.0), abs=0.1)
+    # as long a rest repeats itself too, but is no drive
+    quiet = Record(time, np.where(time < 1.0, values, 0.0), np.ones(time.size, bool), rate=256.0)
+    assert find_steady(quiet, 0.5) is None

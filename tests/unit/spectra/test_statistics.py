@@ -12,7 +12,7 @@ from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Window
 from tethertest.records.lines import DriveFit, Expectation
 from tethertest.spectra import ORDERS, find_lines
-from tethertest.spectra.lines import holm
+from tethertest.spectra.holm import holm
 from tethertest.spectra.regression import amplitude_interval
 
 from .conftest import Maker, autoregressive, cosine

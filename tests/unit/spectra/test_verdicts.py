@@ -84,6 +84,34 @@ def test_the_articles_own_situation_needs_1333_seconds(
     assert half is not None
     assert half.verdict is LineVerdict.NOT_RESOLVABLE
     assert "1333 s would" in half.reason
+    assert half.length_needed == pytest.approx(1333.3, abs=0.1)
+
+
+def test_a_drive_near_twice_a_natural_frequency_is_named_parametric(channel: Maker) -> None:
+    # 0.0085 Hz off in 300 s is 2.5 / T: told apart, and 7 % of the order
+    time = np.arange(9000) / 30.0
+    noise = 0.05 * np.random.default_rng(17).standard_normal(9000)
+    record = channel(time, cosine(time, 0.25) + cosine(time, 0.125, 0.1, 0.5) + noise)
+    near, far = (
+        Expectation((NaturalFrequency("lateral 1", 0.1335),)),
+        Expectation((NaturalFrequency("far", 0.9),)),
+    )
+    window = Window(0.0, 300.0)
+    half = half_of(record, window, 0.25, near)
+    assert half.verdict is LineVerdict.SUBHARMONIC
+    assert "parametric resonance: the drive is near twice the natural frequency 'lateral 1'" in half.reason
+    assert "parametric" not in half_of(record, window, 0.25, far).reason
+    assert "no natural frequency was stated" in half_of(record, window, 0.25).reason
+
+
+def test_a_half_order_that_only_the_second_half_has_is_no_subharmonic(
+    channel: Maker, time: FloatArray, window: Window
+) -> None:
+    noise = 0.05 * np.random.default_rng(18).standard_normal(2048)
+    late = np.where(time > 0.5 * time[-1], cosine(time, 0.125, 0.1, 0.5), 0.0)
+    half = half_of(channel(time, cosine(time, 0.25) + late + noise), window, 0.25)
+    assert half.p_value < 1e-4
+    assert half.verdict in {LineVerdict.LEAKAGE, LineVerdict.UNDETERMINED}
 
 
 def test_a_strong_free_line_between_the_orders_leaks_into_none_of_them(

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tethertest.errors import RunFileError
+from tethertest.readers.calibration import with_calibrations
 from tethertest.readers.config.problems import (
     NAME_SHOWN,
     Problem,
@@ -80,6 +81,10 @@ def load_rig(path: Path | str) -> Rig:
     """
     document = read_document(Path(path), "rig file")
     rig = _checked(Rig, document, rig_problems)
+    try:
+        rig = with_calibrations(rig, Path(path).parent)
+    except RunFileError as error:
+        raise error.located(path) from None
     return replace(rig, uncertainty=uncertainties(Rig, document.data))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from itertools import combinations
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 
 from tethertest.errors import QuantityError
 from tethertest.readers.config.cable_checks import cable_problems, weight_problems
@@ -13,18 +13,23 @@ from tethertest.readers.config.problems import NAME_SHOWN, Problem, is_file_name
 from tethertest.records.rig import Prototype, Rig, Sensor, sensor_noise, sensor_range
 
 _GRATING = {"expected", "capture", "thermo_optic"}
+_OPTIONAL_GRATING = {"thermo_optic_squared", "fibre"}
+#: a load cell has these two, or a calibration
+_SENSITIVITY = {"sensitivity", "rated"}
+#: orders of polynomials that load cells are fitted with
+_ORDERS = (1, 3)
 #: kind of sensor -> keys it needs
 NEEDED_KEYS = {
-    "tension": {"at", "range", "sensitivity", "rated"},
-    "wavelength": {"at", "gauge_factor", "expansion", "compensation"} | _GRATING,
+    "tension": {"at", "range"},
+    "wavelength": {"at", "gauge_factor", "expansion"} | _GRATING,
     "temperature": set[str](),
     "displacement": {"at"},
 }
 #: kind of sensor -> keys it may have besides
 ALLOWED_KEYS = {
-    "tension": set[str](),
-    "wavelength": {"range"},
-    "temperature": {"at", "range", "expansion"} | _GRATING,
+    "tension": {"sensitivity", "rated", "calibration", "excitation"},
+    "wavelength": {"range", "compensation", "temperature_change"} | _OPTIONAL_GRATING,
+    "temperature": {"at", "range", "expansion"} | _GRATING | _OPTIONAL_GRATING,
     "displacement": {"range"},
 }
 _KIND_KEYS = sorted(set().union(*NEEDED_KEYS.values(), *ALLOWED_KEYS.values()))
@@ -32,6 +37,7 @@ _EXAMPLES = {
     "at": "0.5",
     "range": '["-10 N", "100 N"]',
     "sensitivity": '"2 mV/V"',
+    "calibration": '{ log = "calibration.csv", order = 1 }',
     "rated": '"100 N"',
     "expected": '"1550 nm"',
     "capture": '"1.5 nm"',
@@ -52,6 +58,7 @@ def rig_problems(rig: Rig) -> Iterator[Problem]:
     for index, sensor in enumerate(rig.sensor):
         yield from _key_problems(index, sensor)
         yield from _text_problems(index, sensor)
+        yield from _calibration_problems(index, sensor)
         yield from _compensation_problems(index, sensor, rig)
         if sensor.calibrated is not None and sensor.due is not None and sensor.due <= sensor.calibrated:
             yield Problem(
@@ -101,6 +108,8 @@ def _duplicates(table: str, names: list[str]) -> Iterator[Problem]:
 
 def _key_problems(index: int, sensor: Sensor) -> Iterator[Problem]:
     needed = NEEDED_KEYS[sensor.kind]
+    if sensor.kind == "tension" and sensor.calibration is None:
+        needed = needed | _SENSITIVITY
     if sensor.kind == "temperature" and any(getattr(sensor, key) is not None for key in _GRATING):
         needed = needed | _GRATING
     for key in _KIND_KEYS:
@@ -136,6 +145,40 @@ def _text_problems(index: int, sensor: Sensor) -> Iterator[Problem]:
         if noise < 0.0:
             text = f"found {sensor.noise!r}, expected a standard deviation of at least 0"
             yield Problem(("sensor", index, "noise"), text, "correct the value")
+
+
+def _calibration_problems(index: int, sensor: Sensor) -> Iterator[Problem]:
+    calibration = sensor.calibration
+    if calibration is None:
+        return
+    key = ("sensor", index, "calibration")
+    if sensor.sensitivity is not None:
+        text = "found a sensitivity and a calibration, expected one of them"
+        yield Problem(("sensor", index, "sensitivity"), text, "remove the one that is not to be used")
+    if (calibration.log is None) == (not calibration.points):
+        found = "neither log nor points" if calibration.log is None else "both log and points"
+        remedy = 'write { log = "calibration.csv", order = 1 }'
+        yield Problem(key, f"found {found}, expected one of them", remedy)
+    if calibration.points and len(calibration.points) < (calibration.order or 1) + 1:
+        text = f"found {len(calibration.points)} pairs, expected at least {(calibration.order or 1) + 1}"
+        yield Problem((*key, "points"), text, "add pairs of output and force")
+    if calibration.order is not None and not _ORDERS[0] <= calibration.order <= _ORDERS[1]:
+        text = f"found the order {calibration.order}, expected {_ORDERS[0]} to {_ORDERS[1]}"
+        yield Problem((*key, "order"), text, "lower the order; a load cell is nearly a straight line")
+    if calibration.units is not None and calibration.log is None:
+        yield Problem((*key, "units"), "does not belong to points, which have their units", "remove units")
+    if calibration.log is not None:
+        windows = PureWindowsPath(calibration.log)
+        if (
+            not calibration.log.strip()
+            or windows.drive
+            or windows.root
+            or ".." in windows.parts
+            or not is_file_name(calibration.log)
+        ):
+            text = f"found {calibration.log[:NAME_SHOWN]!r}, expected a file beside the rig file"
+            remedy = "copy the calibration log beside the rig file and give its name"
+            yield Problem((*key, "log"), text, remedy)
 
 
 def _compensation_problems(index: int, sensor: Sensor, rig: Rig) -> Iterator[Problem]:

@@ -9,7 +9,9 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from zoneinfo import ZoneInfo
 
 from tethertest.errors import QuantityError
+from tethertest.readers.config.mapping_checks import mapping_problems
 from tethertest.readers.config.problems import NAME_SHOWN, Problem, is_file_name, suggestion
+from tethertest.readers.timeunits import is_time_unit
 from tethertest.records.rig import Rig
 from tethertest.records.run import Drive, Log, RunFile, Windows
 from tethertest.units import channel_scale
@@ -112,9 +114,11 @@ def _log_problems(index: int, log: Log, rig: Rig, folder: Path) -> Iterator[Prob
         yield Problem((*key, "time_zone"), text, 'write "Asia/Shanghai" or "+08:00"')
     for name, unit in log.units.items():
         try:
-            channel_scale(unit)
+            if not is_time_unit(unit):
+                channel_scale(unit)
         except QuantityError as error:
             yield Problem((*key, "units", name), error.problem, error.remedy)
+    yield from mapping_problems(key, log)
 
 
 def _path_problems(key: tuple[str | int, ...], file: str, folder: Path) -> Iterator[Problem]:
@@ -142,13 +146,18 @@ def _is_inside(path: Path, folder: Path) -> bool:
 
 
 def _repeated(logs: tuple[Log, ...]) -> Iterator[Problem]:
-    files: set[str] = set()
+    seen: set[str] = set()
+    tables: dict[str, str | None] = {}
     sensors: dict[str, str] = {}
     for index, log in enumerate(logs):
-        if log.file in files:
+        if log.key in seen:
             text = f"found {log.file!r} a second time"
             yield Problem(("log", index, "file"), text, "name every log once, with all its channels")
-        files.add(log.file)
+        elif log.file in tables and None in {log.table, tables[log.file]}:
+            text = f"found {log.file!r} a second time, and not each with the table to read in it"
+            yield Problem(("log", index, "file"), text, "give every entry of the file its own table")
+        seen.add(log.key)
+        tables.setdefault(log.file, log.table)
         for name, sensor in log.channels.items():
             if sensor in sensors:
                 text = f"found {sensor!r}, which channel {sensors[sensor]!r} already gives"
@@ -168,6 +177,9 @@ def _window_problems(windows: Windows) -> Iterator[Problem]:
             text = f"starts at {span[0]:g} s, before {previous} ends at {getattr(windows, previous)[1]:g} s"
             yield Problem(("windows", name), text, "order them: rest_before, steady, rest_after")
         previous = name
+    if previous is not None and not (windows.reason or "").strip():
+        text = "is missing; windows set by hand need it"
+        yield Problem(("windows", "reason"), text, 'add reason = "why the windows found do not do"')
 
 
 def _span_problems(key: tuple[str | int, ...], span: tuple[float, float]) -> Iterator[Problem]:

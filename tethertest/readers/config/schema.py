@@ -39,7 +39,8 @@ def json_schema(kind: FileKind) -> dict[str, Any]:
 
     record = FILE_RECORDS[kind]
     schema = TypeAdapter(record).json_schema()
-    tables = schema.pop("$defs", {})
+    known = {table.__name__ for table in _tables(record)}
+    tables = {name: table for name, table in schema.pop("$defs", {}).items() if name in known}
     for table in _tables(record):
         _finish(schema if table is record else tables[table.__name__], table)
     finished: dict[str, Any] = _without_null({"$schema": DIALECT, **schema, "$defs": tables})

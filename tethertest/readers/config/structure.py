@@ -14,8 +14,8 @@ from tethertest.readers.config.toml import KeyPath
 from tethertest.records.quantity import SI
 from tethertest.units import parse_quantity
 
-#: fields of records that no file has: `uncertainties` fills them
-DERIVED_FIELDS = frozenset({"uncertainty"})
+#: fields of records that no file has: `uncertainties` and `with_calibrations` fill them
+DERIVED_FIELDS = frozenset({"uncertainty", "calibrations"})
 
 Record = TypeVar("Record")
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -11,36 +9,23 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
-from tethertest.readers.text.document import Document, Head, file_sha256, read_document
+from tethertest.readers.formats.catman_header import MARK, Header, read_header
+from tethertest.readers.formats.catman_time import channel_times, is_time
+from tethertest.readers.text.document import Head, file_sha256, read_document
 from tethertest.readers.text.stamps import Stamps, parse_stamps, time_zone_of
-from tethertest.readers.text.table import check_widths, find_rows, is_number, read_columns
-from tethertest.records.channel import RawChannel, RawLog
+from tethertest.readers.text.table import Rows, check_widths, find_rows, read_columns
+from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
 
 NAME = "catman"
-_MARK: Final = "HBM_CATMAN_DATAFILE"
-_CHANNEL_NUMBER = re.compile(r"\s*CH=\d+\s*$")
-_INTERVAL = re.compile(r"dt\s*=\s*([\d.,]+)\s*(s|ms|us|µs)", re.IGNORECASE)
-_SECONDS: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}
-_HEADER_LINES: Final = 200
-
-
-@dataclass(frozen=True, slots=True)
-class _Header:
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    start: str  #: text behind "T0 =", "" where absent
-    interval: float | None  #: [s]
-    separator: str
-    stated_rows: int | None
-    names_line: int
-    first_line: int
+#: cells of a cut row that its message shows
+_CELLS_SHOWN: Final = 4
 
 
 def sniff(head: Head) -> str | None:
     """Claim files whose first line begins with ``HBM_CATMAN_DATAFILE``."""
-    if head.lines and head.lines[0].startswith(_MARK):
-        return f"the first line begins with {_MARK!r}"
+    if head.lines and head.lines[0].startswith(MARK):
+        return f"the first line begins with {MARK!r}"
     return None
 
 
@@ -52,53 +37,48 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     path : Path
         The log, plain or in gzip or zip.
     settings : Log, optional
-        Settings of the run file: encoding, decimal, date_order, time_zone, units.
+        Settings of the run file: encoding, decimal, date_order, time_zone, rate, units.
 
     Returns
     -------
     RawLog
-        A channel's time is the time channel left of it, or its place times ``dt``; names lose their ``CH=n``.
+        A channel's time is the time channel left of it, or its place times its ``dt``, counted from the first
+        ``T0``; names lose their ``CH=n``.
 
     Raises
     ------
     FileFormatError
-        The header is incomplete, a row is cut, or there are fewer rows than ``MAXLINES`` states.
+        The header is incomplete or contradicts itself or the rows, a row is cut, or the number of rows is not
+        the one that ``MAXLINES`` states.
     """
     document = read_document(path, settings.encoding if settings is not None else None)
-    header = _read_header(document)
+    header = read_header(document)
     text = document.from_line(header.first_line)
     rows = find_rows(
         path, text, header.first_line, header.separator, _decimal(text, header.separator, settings)
     )
     width = len(header.names)
-    check_widths(rows, width, width + 1 if rows.counts[0] > width else width)
-    if header.stated_rows is not None and len(rows.lines) < header.stated_rows:
-        message = f"the log is cut: MAXLINES states {header.stated_rows} rows, found {len(rows.lines)}"
-        remedy = "copy the whole file from the logger again, or export it again from catman"
-        raise FileFormatError(message, remedy, path=path, line=int(rows.lines[-1]))
+    _check_rows(rows, width, header)
     columns = read_columns(rows, width, header.names, unused={width})
-    stamps = _start(path, header, settings)
+    stamps = _starts(path, header, settings)
     zone = time_zone_of(settings.time_zone if settings is not None else None, path)
-    channels: list[RawChannel] = []
     names, renamed = unique_names(header.names)
-    time = None if header.interval is None else header.interval * np.arange(len(rows.lines))
+    rate = settings.rate if settings is not None else None
+    times, remarks = channel_times(header, columns.numbers, rows, rate)
+    shift = np.zeros(width) if stamps is None else stamps.seconds()
+    channels = []
     for column, (name, unit) in enumerate(zip(names, header.units, strict=True)):
-        values = columns.numbers[column]
-        if name.lower().startswith("time") and unit == "s":
-            time = values
-            continue
-        if time is None:
-            message = f"channel {name!r} has neither a time channel nor dt"
-            raise FileFormatError(
-                message, "export the log with its time channel", path=path, line=header.names_line
-            )
-        logged = np.isfinite(time)
-        channels.append(raw_channel(name, unit, time[logged], values[logged]))
+        if not is_time(header, column):
+            where, time = times[column]
+            channels.append(raw_channel(name, unit, time + shift[column], columns.numbers[column][where]))
     if not channels:
         message = "the log has a time but no channels"
         raise FileFormatError(
             message, "choose the file that holds the data", path=path, line=header.names_line
         )
+    if np.any(shift != 0.0):
+        remarks.append(f"the channels start up to {np.ptp(shift):g} s apart, by their T0")
+    intervals = {interval for interval in header.intervals if interval is not None}
     return RawLog(
         path=path,
         format=NAME,
@@ -110,68 +90,63 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         separator=header.separator,
         date_order="" if stamps is None else stamps.date_order,
         header_line=header.names_line,
-        rate=None if header.interval is None else 1.0 / header.interval,
-        remarks=(*renamed, *columns.remarks),
+        rate=1.0 / intervals.pop() if len(intervals) == 1 else None,
+        remarks=(*renamed, *columns.remarks, *remarks),
     )
-
-
-def _read_header(document: Document) -> _Header:
-    lines = document.lines(_HEADER_LINES)
-    keys = {
-        key.strip(): value.strip() for key, sign, value in (line.partition(":") for line in lines[:8]) if sign
-    }
-    separator = chr(int(keys["SEPARATOR"])) if keys.get("SEPARATOR", "").isdigit() else "\t"
-    names_at = next(
-        (i for i, line in enumerate(lines[3:], start=3) if line.count(separator) and "CH=" in line), None
-    )
-    start_at = next((i for i, line in enumerate(lines) if line.startswith("T0")), None)
-    first = _first_data_line(lines, separator, start_at)
-    if names_at is None or first is None:
-        missing = "names (CH=n)" if names_at is None else "data"
-        message = f"the header of the catman file is incomplete: found no row of {missing}"
-        raise FileFormatError(
-            message, "copy the whole file from the logger again", path=document.path, line=len(lines)
-        )
-    written = [cell.strip() for cell in lines[names_at].split(separator)]
-    stripped = [_CHANNEL_NUMBER.sub("", name) for name in written]
-    units = [cell.strip() for cell in lines[names_at + 1].split(separator)]
-    count = int(keys["CHANNELS"]) if keys.get("CHANNELS", "").isdigit() else len(written)
-    if count != len(written):
-        message = f"CHANNELS states {count} channels, the row of names has {len(written)}"
-        raise FileFormatError(message, "export the log again", path=document.path, line=names_at + 1)
-    interval = next((match for line in lines[:first] if (match := _INTERVAL.match(line))), None)
-    start = "" if start_at is None else lines[start_at].split(separator)[0].partition("=")[2].strip()
-    return _Header(
-        names=tuple(stripped),
-        units=tuple([*units, *[""] * count][:count]),
-        start=start,
-        interval=float(interval[1].replace(",", ".")) * _SECONDS[interval[2].lower()] if interval else None,
-        separator=separator,
-        stated_rows=int(keys["MAXLINES"]) if keys.get("MAXLINES", "").isdigit() else None,
-        names_line=names_at + 1,
-        first_line=first + 1,
-    )
-
-
-def _first_data_line(lines: list[str], separator: str, start_at: int | None) -> int | None:
-    """Return the index of the first row of numbers behind the header rows."""
-    for index in range(start_at if start_at is not None else 8, len(lines)):
-        cells = [cell.strip() for cell in lines[index].split(separator)]
-        filled = [cell for cell in cells if cell]
-        if filled and all(is_number(cell, ".") or is_number(cell, ",") for cell in filled):
-            return index
-    return None
 
 
 def _decimal(text: bytes, separator: str, settings: Log | None) -> str:
     """Find the decimal sign: catman writes no thousands, so a comma between tabs is one."""
     if settings is not None and settings.decimal is not None:
         return settings.decimal
-    return "," if separator != "," and b"," in text[:20000] else "."
+    return "," if separator != "," and b"," in text else "."
 
 
-def _start(path: Path, header: _Header, settings: Log | None) -> Stamps | None:
-    if not header.start:
+def _check_rows(rows: Rows, width: int, header: Header) -> None:
+    """Refuse rows that are cut or ragged, and another number of rows than ``MAXLINES`` states.
+
+    Raises
+    ------
+    FileFormatError
+        Names the line, what stands there, and how many whole rows there are.
+    """
+    stated, found = header.stated_rows, len(rows.lines)
+    of_stated = "" if stated is None else f" of the {stated} that MAXLINES states"
+    remedy = "copy the whole file from the logger again, or export it again from catman"
+    whole = int(np.count_nonzero((rows.counts == width) | (rows.counts == width + 1)))
+    if rows.counts[-1] < width and whole == found - 1:
+        cells = [cell.decode() for cell in rows.body.rstrip(b"\n").rpartition(b"\n")[2].split(b"\t")]
+        shown = rows.separator.join(cells).split(rows.separator)[:_CELLS_SHOWN]
+        more = ", ..." if rows.counts[-1] > _CELLS_SHOWN else ""
+        message = (
+            f"the last row is cut: found {rows.counts[-1]} of {width} columns "
+            f"({', '.join(shown)}{more}); before it "
+            f"the log has {whole} whole rows{of_stated}"
+        )
+        limit = "" if stated is None else f" and set MAXLINES to {whole}"
+        remedy = f"{remedy}; to use the {whole} whole rows, delete this one{limit} in a copy of the log"
+        raise FileFormatError(message, remedy, path=rows.path, line=int(rows.lines[-1]))
+    check_widths(rows, width, width + 1 if rows.counts[0] > width else width)
+    if stated is not None and found != stated:
+        what = "the log is cut" if found < stated else "the log has more rows than its header states"
+        message = f"{what}: MAXLINES states {stated} rows, found {found}"
+        limit = f"; if these rows are all, set MAXLINES to {found} in a copy of the log"
+        raise FileFormatError(
+            message, remedy + limit, path=rows.path, line=int(rows.lines[min(found, stated) - 1])
+        )
+
+
+def _starts(path: Path, header: Header, settings: Log | None) -> Stamps | None:
+    """Return T0 of every column; a date with slashes is read as the plainly written one, if there is one."""
+    texts = [text or header.starts[0] for text in header.starts]
+    if not texts[0]:
         return None
-    order = settings.date_order if settings is not None else None
-    return parse_stamps([header.start], path, [header.names_line], order or "dmy")
+    order: str | None = settings.date_order if settings is not None else None
+    lines = [header.start_line] * len(texts)
+    if order is None and header.date is not None and "/" in texts[0]:
+        _year, month, day = header.date
+        numbers = [int(part) for part in texts[0].split()[0].split("/") if part.isdigit()]
+        for possible, parts in (("dmy", [day, month]), ("mdy", [month, day])):
+            if numbers[:2] == parts and day != month:
+                order = possible
+    return parse_stamps(texts, path, lines, order)

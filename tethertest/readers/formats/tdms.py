@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import datetime as dt
-import io
 import logging
-from collections import Counter
+import shutil
+import tempfile
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.channels import raw_channel, unique_names, with_units
-from tethertest.readers.text.document import Head, file_sha256, read_bytes
+from tethertest.readers.channels import raw_channel, with_units
+from tethertest.readers.formats.tdms_channels import Key, Plan, planned
+from tethertest.readers.text.document import Head, file_sha256, opened
 from tethertest.readers.text.stamps import time_zone_of
-from tethertest.records.arrays import FloatArray
+from tethertest.readers.text.textlog import Progress
+from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.run import Log
 
 NAME = "tdms"
-_EPOCH = np.datetime64(0, "ns")
+#: bytes of a compressed file that are unpacked in memory; a larger one goes to the disk
+_SPOOLED: Final = 2**26
 
 
 def sniff(head: Head) -> str | None:
@@ -49,146 +56,148 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     FileFormatError
         The file is cut or damaged, holds no data, or a channel has no time.
     """
-    file = _opened(path)
-    found = [channel for group in file.groups() for channel in group.channels()]
-    clocks = {group.name: _time_channel(group) for group in file.groups()}
-    remarks: list[str] = []
-    data = []
-    for channel in found:
-        if channel is clocks[channel.group_name]:
-            continue
-        if channel.data_type is None or not _is_numeric(channel):
-            remarks.append(f"channel {channel.name!r} holds no numbers and is left out")
-        else:
-            data.append(channel)
-    if not any(len(channel) for channel in data):
-        message = "the log has no data: it is empty or was cut"
-        raise FileFormatError(message, "copy the whole file from the logger again", path=path)
-    starts = [_start(channel, clocks[channel.group_name]) for channel in data]
-    known = [start for start in starts if start is not None]
-    first = min(known) if known else None
-    repeated = Counter(channel.name for channel in data)
-    names, renamed = unique_names(
-        f"{channel.group_name}/{channel.name}" if repeated[channel.name] > 1 else channel.name
-        for channel in data
-    )
-    channels = [
-        _channel(path, channel, clocks[channel.group_name], name, start, first)
-        for channel, name, start in zip(data, names, starts, strict=True)
-    ]
-    remarks.extend(
-        f"channel {channel.name!r} has no samples" for channel in channels if not channel.values.size
-    )
-    rates = {1.0 / increment for channel in data if (increment := _increment(channel)) > 0}
-    if len(rates) > 1:
-        remarks.append(
-            f"the channels have {len(rates)} rates: {', '.join(f'{rate:g} Hz' for rate in sorted(rates))}"
-        )
+    with ThreadPoolExecutor(1) as pool, _opened(path) as file:
+        digest = pool.submit(file_sha256, path)
+        plan = planned(path, file)
+        arrays = {key: np.empty(length) for key, length in plan.lengths.items()}
+        filled = dict.fromkeys(arrays, 0)
+        for key, values in _chunks(path, file, plan):
+            arrays[key][filled[key] : filled[key] + len(values)] = values
+            filled[key] += len(values)
+        times: dict[tuple[float, float, int], FloatArray] = {}
+        channels = []
+        for source in plan.sources:
+            values = frozen(arrays[source.key])
+            if source.clock is not None:
+                time = frozen(arrays[source.clock])
+            else:  # channels of one clock share the array
+                clock = (source.offset, source.increment, len(values))
+                if clock not in times:
+                    times[clock] = frozen(source.time(0, len(values)))
+                time = times[clock]
+            channels.append(raw_channel(source.name, source.unit, time, values))
+        return _log(path, plan, channels, settings, digest.result())
+
+
+def stream(path: Path, settings: Log | None, rows: int, progress: Progress | None = None) -> Iterator[RawLog]:
+    """Yield the log in pieces in which no channel has more samples than `rows`.
+
+    Channels of other rates end sooner in a piece or go on in the next: what is together in the file stays
+    together. A piece is made as soon as one channel has enough samples, so the chunks of the file, not its
+    length, bound the memory.
+
+    Raises
+    ------
+    FileFormatError
+        As `read`, once the mistake is reached.
+    """
+    digest = file_sha256(path)
+    with _opened(path) as file:
+        plan = planned(path, file)
+        held: dict[Key, list[FloatArray]] = {key: [] for key in plan.lengths}
+        begun = dict.fromkeys(plan.lengths, 0)
+        size, total, done = path.stat().st_size, sum(plan.lengths.values()), 0
+        pending = True
+        for key, values in _chunks(path, file, plan):
+            held[key].append(values)
+            done += len(values)
+            if progress is not None:
+                progress(size * done // total, size)
+            while max(counts := plan.ready(held), default=0) >= rows:
+                yield _log(path, plan, _taken(plan, held, begun, counts, rows), settings, digest)
+                plan = replace(plan, remarks=())
+                pending = False
+        while pending or max(plan.ready(held), default=0) > 0:
+            counts = plan.ready(held)
+            yield _log(path, plan, _taken(plan, held, begun, counts, rows), settings, digest)
+            plan = replace(plan, remarks=())
+            pending = False
+
+
+def _taken(
+    plan: Plan, held: dict[Key, list[FloatArray]], begun: dict[Key, int], counts: list[int], rows: int
+) -> list[RawChannel]:
+    """Take the next samples of every channel out of what is held."""
+    taken: dict[Key, FloatArray] = {}
+    channels = []
+    for source, count in zip(plan.sources, counts, strict=True):
+        for key in (source.key, source.clock):
+            if key is not None and key not in taken:
+                parts = held[key] or [np.empty(0)]
+                whole = parts[0] if len(parts) == 1 else np.concatenate(parts)
+                taken[key] = whole[: min(count, rows)].copy()
+                held[key] = [whole[min(count, rows) :]]
+        values = taken[source.key]
+        first = begun[source.key]
+        begun[source.key] = first + len(values)
+        time = source.time(first, first + len(values)) if source.clock is None else taken[source.clock]
+        channels.append(raw_channel(source.name, source.unit, time, values))
+    return channels
+
+
+def _chunks(path: Path, file: Any, plan: Plan) -> Iterator[tuple[Key, FloatArray]]:
+    """Yield the samples as they come in the file, stamps as seconds since the first."""
+    chunks = iter(file.data_chunks())
+    while True:
+        parts: list[tuple[Key, FloatArray]] = []
+        try:
+            chunk = next(chunks, None)
+            if chunk is None:
+                return
+            for group in chunk.groups():
+                for channel in group.channels():
+                    key = (group.name, channel.name)
+                    if key in plan.lengths and len(channel):
+                        values = channel[:]
+                        if key in plan.origins:
+                            values = (values - plan.origins[key]) / np.timedelta64(1, "s")
+                        parts.append((key, np.asarray(values, dtype=np.float64)))
+        except Exception as error:  # npTDMS lets errors of struct and of its own parser through
+            raise _damaged(path, error) from error
+        yield from parts
+
+
+def _log(path: Path, plan: Plan, channels: Iterable[RawChannel], settings: Log | None, digest: str) -> RawLog:
     zone = time_zone_of(settings.time_zone if settings is not None else None, path)
     return RawLog(
         path=path,
         format=NAME,
-        sha256=file_sha256(path),
-        start=None if first is None else _as_datetime(first, zone),
+        sha256=digest,
+        start=None if plan.start is None else _as_datetime(plan.start, zone),
         channels=with_units(path, channels, settings),
-        rate=rates.pop() if len(rates) == 1 else None,
-        remarks=(*renamed, *remarks),
+        rate=plan.rate,
+        remarks=plan.remarks,
     )
 
 
-def _opened(path: Path) -> Any:
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Open the file with its lists read and its samples left where they are."""
     from nptdms import TdmsFile
     from nptdms.log import log_manager
 
     # what npTDMS would print about a cut file is in our own message
     log_manager.set_level(logging.CRITICAL)
-    data = read_bytes(path)
-    try:
-        file = TdmsFile.read(io.BytesIO(data))
-    except Exception as error:  # npTDMS lets errors of struct and of its own parser through
-        message = f"the TDMS file is damaged or cut ({error})"
-        raise FileFormatError(message, "copy the whole file from the logger again", path=path) from error
-    status = file.file_status
-    if status is not None and status.incomplete_final_segment:
-        message = "the TDMS file is cut: its last segment is incomplete"
-        raise FileFormatError(message, "copy the whole file from the logger again", path=path)
-    return file
+    with opened(path) as (stream, on_disk), tempfile.SpooledTemporaryFile(_SPOOLED) as unpacked:
+        seekable: Any = stream
+        if stream is not on_disk:
+            shutil.copyfileobj(stream, unpacked)
+            unpacked.seek(0)
+            seekable = unpacked
+        try:
+            file = TdmsFile.open(seekable)
+        except Exception as error:  # npTDMS lets errors of struct and of its own parser through
+            raise _damaged(path, error) from error
+        status = file.file_status
+        if status is not None and status.incomplete_final_segment:
+            message = "the TDMS file is cut: its last segment is incomplete"
+            raise FileFormatError(message, "copy the whole file from the logger again", path=path)
+        yield file
 
 
-def _is_numeric(channel: Any) -> bool:
-    return np.issubdtype(channel.dtype, np.number) and not np.issubdtype(channel.dtype, np.complexfloating)
-
-
-def _time_channel(group: Any) -> Any | None:
-    """Return the group's channel of stamps or seconds, if its other channels are no waveforms."""
-    if any(_increment(channel) > 0 for channel in group.channels()):
-        return None
-    stamped = [channel for channel in group.channels() if channel.dtype.kind == "M"]
-    named = [
-        channel
-        for channel in group.channels()
-        if _is_numeric(channel) and channel.name.strip().lower() in {"time", "t", "timestamp", "x_value"}
-    ]
-    return next(iter([*stamped, *named]), None)
-
-
-def _increment(channel: Any) -> float:
-    return float(channel.properties.get("wf_increment", 0.0))
-
-
-def _start(channel: Any, clock: Any | None) -> np.datetime64 | None:
-    """Return the channel's first instant, UTC."""
-    if clock is not None:
-        stamped = clock.dtype.kind == "M" and len(clock) > 0
-        return clock[0].astype("datetime64[ns]") if stamped else None
-    stamp = channel.properties.get("wf_start_time")
-    if stamp is None:
-        return None
-    stamp = np.datetime64(stamp).astype("datetime64[ns]")
-    # a waveform without a clock has LabVIEW's zero, 1904
-    return stamp if stamp > _EPOCH else None
-
-
-def _channel(
-    path: Path,
-    channel: Any,
-    clock: Any | None,
-    name: str,
-    start: np.datetime64 | None,
-    first: np.datetime64 | None,
-) -> RawChannel:
-    values = np.asarray(channel[:], dtype=np.float64)
-    unit = str(channel.properties.get("unit_string", "")).strip()
-    return raw_channel(name, unit, _time(path, channel, clock, len(values), start, first), values)
-
-
-def _time(
-    path: Path,
-    channel: Any,
-    clock: Any | None,
-    count: int,
-    start: np.datetime64 | None,
-    first: np.datetime64 | None,
-) -> FloatArray:
-    if clock is not None:
-        if len(clock) != count:
-            message = (
-                f"channel {channel.name!r} has {count} samples, its time {clock.name!r} has {len(clock)}"
-            )
-            raise FileFormatError(message, "export the log again", path=path)
-        ticks = clock[:]
-        if clock.dtype.kind != "M":
-            return np.asarray(ticks, dtype=np.float64)
-        seconds: FloatArray = (ticks - ticks[:1]) / np.timedelta64(1, "s")
-        return seconds
-    increment = _increment(channel)
-    if increment <= 0 and count:
-        message = f"channel {channel.name!r} has neither wf_increment nor a time channel"
-        raise FileFormatError(message, "log it as a waveform, or export it with a time channel", path=path)
-    shift = 0.0 if start is None or first is None else float((start - first) / np.timedelta64(1, "s"))
-    offset = shift + float(channel.properties.get("wf_start_offset", 0.0))
-    time: FloatArray = offset + increment * np.arange(count, dtype=np.float64)
-    return time
+def _damaged(path: Path, error: Exception) -> FileFormatError:
+    message = f"the TDMS file is damaged or cut ({error})"
+    return FileFormatError(message, "copy the whole file from the logger again", path=path)
 
 
 def _as_datetime(instant: np.datetime64, zone: dt.tzinfo | None) -> dt.datetime:

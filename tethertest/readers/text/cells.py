@@ -36,7 +36,9 @@ def split_row(line: str, separator: str) -> list[str]:
         return line.split()
     if '"' in line:
         with suppress(csv.Error):
-            return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+            return [
+                cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+            ]
     return [cell.strip() for cell in line.split(separator)]
 
 
@@ -74,9 +76,10 @@ def column_kind(cells: Sequence[str]) -> str:
     for cell in cells:
         if not cell or cell.lower() in MISSING_TOKENS:
             counts["blank"] += 1
-        elif is_number(cell, ".") or is_number(cell, ",") or re.fullmatch(r"[-+]?[\d.,' ]+", cell):
+        elif is_number(cell, ".") or is_number(cell, ","):
             counts["number"] += 1
-        else:
-            counts[stamp_kind(cell) or "text"] += 1
+        else:  # a date may be written with points; what is no date and has only digits and signs is a number
+            kind = stamp_kind(cell)
+            counts[kind or ("number" if re.fullmatch(r"[-+]?[\d.,' ]+", cell) else "text")] += 1
     filled = [(count, kind) for kind, count in counts.items() if kind != "blank"]
     return max(filled)[1] if filled else "blank"

@@ -7,11 +7,21 @@ import hashlib
 import io
 import zipfile
 import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Final, cast
 
 from tethertest.errors import FileFormatError
+from tethertest.readers.containers.zips import (
+    ZIP_MAGIC,
+    LimitedStream,
+    is_workbook,
+    member_stream,
+    members,
+    opened_zip,
+)
 from tethertest.readers.text.encoding import decodes, detect_encoding
 
 #: enough to pass a header of more than a hundred long lines
@@ -40,6 +50,10 @@ class Document:
     def lines(self, count: int) -> list[str]:
         """Return the first `count` lines."""
         return [line.decode() for line in self.body.split(b"\n", count)[:count]]
+
+    def bodies(self) -> Iterator[bytes]:
+        """Yield the text, whole."""
+        yield self.body
 
     def from_line(self, number: int) -> bytes:
         """Return the text from a line on, counted from 1."""
@@ -70,7 +84,7 @@ def read_head(path: Path, encoding: str | None = None) -> Head:
     found = encoding or detect_encoding(data, complete=complete)
     lines: tuple[str, ...] = ()
     if found is not None:
-        text = _decode(path, data, found, errors="replace")
+        text = decode(path, data, found, errors="replace")
         lines = tuple(_one_line_end(text).split("\n"))
         if not complete and len(lines) > 1:
             lines = lines[:-1]
@@ -96,7 +110,7 @@ def read_document(path: Path, encoding: str | None = None) -> Document:
     if found == "ascii" or (found in {"utf-8", "utf-8-sig"} and decodes(data, "utf-8")):
         body = data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
     else:
-        body = _decode(path, data, found).replace("\r\n", "\n").encode()
+        body = decode(path, data, found).replace("\r\n", "\n").encode()
     if b"\n" not in body:
         body = body.replace(b"\r", b"\n")
     nul = body.find(b"\0")
@@ -111,20 +125,21 @@ def nul_bytes(path: Path, line: int) -> FileFormatError:
     return FileFormatError(message, "export the log again from the logger", path=path, line=line)
 
 
-def read_bytes(path: Path, limit: int = -1) -> bytes:
-    """Return the first `limit` decompressed bytes of a file, or all of them.
+@contextmanager
+def opened(path: Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
+    """Open a log to be read from its start, decompressed; yield that stream and the file's own.
 
     Raises
     ------
     FileFormatError
-        The file is missing, empty, a folder, unreadable, or its compression is damaged.
+        The file is missing, a folder, unreadable, or its compression is damaged, now or while it is read.
     """
     if path.is_dir():
         message = "found a folder, expected a log file"
         raise FileFormatError(message, "name one of the files in it", path=path)
     try:
-        with path.open("rb") as stream, _decompressed(path, stream) as inner:
-            data = inner.read(limit)
+        with path.open("rb") as file, _decompressed(path, file) as stream:
+            yield stream, file
     except FileNotFoundError as error:
         message = "the log does not exist"
         raise FileFormatError(message, "correct the file name or copy the log here", path=path) from error
@@ -134,6 +149,18 @@ def read_bytes(path: Path, limit: int = -1) -> bytes:
     except OSError as error:
         message = f"the log cannot be read ({error.strerror})"
         raise FileFormatError(message, "check its permissions and the disk", path=path) from error
+
+
+def read_bytes(path: Path, limit: int = -1) -> bytes:
+    """Return the first `limit` decompressed bytes of a file, or all of them.
+
+    Raises
+    ------
+    FileFormatError
+        The file is missing, empty, a folder, unreadable, or its compression is damaged.
+    """
+    with opened(path) as (stream, _):
+        data = stream.read(limit)
     if not data.strip():
         message = "the log is empty"
         raise FileFormatError(message, "copy it again from the logger", path=path)
@@ -141,24 +168,30 @@ def read_bytes(path: Path, limit: int = -1) -> bytes:
 
 
 def _decompressed(path: Path, stream: BinaryIO) -> BinaryIO:
+    """Return the log inside a gzip file or a zip archive of one; any other file as it is."""
     magic = stream.read(4)
+    size = stream.seek(0, io.SEEK_END)
     stream.seek(0)
     if magic.startswith(b"\x1f\x8b"):
-        return cast("BinaryIO", gzip.GzipFile(fileobj=stream))
-    if magic != b"PK\x03\x04":
+        return cast("BinaryIO", LimitedStream(gzip.GzipFile(fileobj=stream), path, size))
+    if magic != ZIP_MAGIC:
         return stream
-    archive = zipfile.ZipFile(stream)
-    names = [name for name in archive.namelist() if not name.endswith("/")]
-    if any(name.startswith("xl/") for name in names):
-        message = "found an Excel workbook, expected a log"
-        raise FileFormatError(message, "save the sheet as CSV (UTF-8)", path=path)
-    if len(names) != 1:
-        message = f"found a zip archive of {len(names)} files, expected one log"
-        raise FileFormatError(message, "unpack it and name the log", path=path)
-    return cast("BinaryIO", io.BytesIO(archive.read(names[0])))
+    archive = opened_zip(stream, path)
+    found = members(archive)
+    if len(found) != 1 or is_workbook(archive):  # other readers choose among the members
+        stream.seek(0)
+        return stream
+    return cast("BinaryIO", member_stream(archive, found[0], path, size))
 
 
-def _decode(path: Path, data: bytes, encoding: str, errors: str = "strict") -> str:
+def decode(path: Path, data: bytes, encoding: str, errors: str = "strict") -> str:
+    """Return the text without its byte-order mark.
+
+    Raises
+    ------
+    FileFormatError
+        The encoding is unknown or none of a log, or bytes do not belong to it.
+    """
     try:
         return data.decode(encoding, errors).removeprefix("\ufeff")
     except LookupError as error:

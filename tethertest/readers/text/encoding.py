@@ -16,8 +16,8 @@ _CONTROL = re.compile(rb"[\x01-\x08\x0e-\x1a\x1c-\x1f]")
 #: enough to tell text from binary
 _SAMPLE_BYTES: Final = 65536
 #: GB 2312 rows of symbols and of the common ideographs, as lead bytes
-_SYMBOLS = range(0xA1, 0xAA)
-_COMMON_IDEOGRAPHS = range(0xB0, 0xD8)
+SYMBOLS = range(0xA1, 0xAA)
+COMMON_IDEOGRAPHS = range(0xB0, 0xD8)
 
 
 def detect_encoding(data: bytes, *, complete: bool = True) -> str | None:
@@ -93,5 +93,5 @@ def _is_chinese(data: bytes, *, complete: bool) -> bool:
     if not runs or any(len(run) % 2 for run in runs) or not _decodes(data, "gb18030", complete=complete):
         return False
     leads = [lead for run in runs for lead in run[::2]]
-    common = sum(lead in _SYMBOLS or lead in _COMMON_IDEOGRAPHS for lead in leads)
+    common = sum(lead in SYMBOLS or lead in COMMON_IDEOGRAPHS for lead in leads)
     return common >= 0.8 * len(leads)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, Protocol
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.text.cells import (
@@ -17,7 +18,6 @@ from tethertest.readers.text.cells import (
     split_row,
     split_unit,
 )
-from tethertest.readers.text.document import Document
 from tethertest.readers.text.table import MISSING_TOKENS, SPACES, is_number
 from tethertest.records.run import Log
 
@@ -55,9 +55,29 @@ class Layout:
     units: tuple[str, ...]
     kinds: tuple[str, ...]  #: of the columns, see `column_kind`
     comments: tuple[str, ...]  #: comment lines above the data, without their sign
+    numbered: bool  #: the file has no names and run.toml gives none
+    first_cells: tuple[str, ...]  #: of the first data row
+    first_column: tuple[str, ...]  #: cells at the beginning of the first column
 
 
-def find_layout(document: Document, settings: Log | None) -> Layout:
+class TextSource(Protocol):
+    """A text log, in memory or on disk."""
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        ...
+
+    def lines(self, count: int) -> list[str]:
+        """Return the first `count` lines."""
+        ...
+
+    def bodies(self) -> Iterator[bytes]:
+        """Yield the text from its start in pieces of whole rows, as UTF-8."""
+        ...
+
+
+def find_layout(source: TextSource, settings: Log | None) -> Layout:
     """Find the layout by content; settings of the run file come first.
 
     Raises
@@ -65,14 +85,14 @@ def find_layout(document: Document, settings: Log | None) -> Layout:
     FileFormatError
         There are no columns, the header does not fit the rows, or a decimal sign can be read two ways.
     """
-    path = document.path
+    path = source.path
     skip = settings.skip_rows if settings is not None else 0
-    directive = _DIRECTIVE.fullmatch(document.lines(1)[0])
+    directive = _DIRECTIVE.fullmatch(source.lines(1)[0])
     if directive:
         skip = max(skip, 1)
     plain: list[tuple[int, str]] = []
     comments: list[tuple[int, str]] = []
-    for number, text in enumerate(document.lines(skip + _SAMPLE_LINES), start=1):
+    for number, text in enumerate(source.lines(skip + _SAMPLE_LINES), start=1):
         if number <= skip or not text.strip():
             continue
         if text.lstrip().startswith(_COMMENT):
@@ -83,8 +103,12 @@ def find_layout(document: Document, settings: Log | None) -> Layout:
     separator, lines, width = _find_separator(path, plain, wanted or (directive and directive[1]))
     first = _first_data_row(path, lines, width)
     data = [line for line in lines[first:] if abs(len(line.cells) - width) <= 1]
-    decimal = _find_decimal(document, data, separator, settings)
+    decimal = _find_decimal(source, data, separator, settings)
     header_line, names, units = _find_names(path, lines[:first], comments, separator, width, lines[first])
+    numbered = header_line is None
+    if settings is not None and settings.columns:
+        names, units = _names_of_settings(path, settings.columns, lines[first], header_line, names)
+        header_line, numbered = None, False
     if names and not names[-1] and len(names) > 1:
         names, units = names[:-1], units[:-1]
     kinds = tuple(
@@ -93,8 +117,11 @@ def find_layout(document: Document, settings: Log | None) -> Layout:
     )
     texts = tuple(text for _, text in comments)
     return Layout(
-        separator, decimal, header_line, lines[first].number, len(names), names, units, kinds, texts
-    )
+        separator, decimal, header_line, lines[first].number, len(names), names, units, kinds, texts,
+        numbered=numbered,
+        first_cells=tuple(lines[first].cells),
+        first_column=tuple(line.cells[0] for line in data[:200]),
+    )  # fmt: skip
 
 
 def _find_separator(
@@ -150,7 +177,7 @@ def _is_filled_datum(cell: str) -> bool:
     return bool(cell) and is_datum(cell)
 
 
-def _find_decimal(document: Document, data: list[Line], separator: str, settings: Log | None) -> str:
+def _find_decimal(source: TextSource, data: list[Line], separator: str, settings: Log | None) -> str:
     if settings is not None and settings.decimal is not None:
         return settings.decimal
     commas = points = decided = False
@@ -160,7 +187,7 @@ def _find_decimal(document: Document, data: list[Line], separator: str, settings
             if _BOTH_SIGNS.fullmatch(cell):
                 message = f"found {cell!r}: a number with thousands separators"
                 raise FileFormatError(
-                    message, "export the log without them", path=document.path, line=line.number
+                    message, "export the log without them", path=source.path, line=line.number
                 )
             if "," in cell and (is_number(cell, ",") or _GROUPED.fullmatch(cell)):
                 commas = True
@@ -171,20 +198,22 @@ def _find_decimal(document: Document, data: list[Line], separator: str, settings
         return "."
     if decided and not points:
         return ","
-    if not points and _has_decimal_comma(document.body, separator):
+    if not points and _has_decimal_comma(source.bodies(), separator):
         return ","
     number, cell = grouped
     message = f"found {cell!r}: its comma may be a decimal sign or a thousands separator"
     if points:
         message = f"found {cell!r} beside numbers with a decimal point"
     remedy = 'set decimal = "," for this log in run.toml if it is, or export without thousands separators'
-    raise FileFormatError(message, remedy, path=document.path, line=number)
+    raise FileFormatError(message, remedy, path=source.path, line=number)
 
 
-def _has_decimal_comma(body: bytes, separator: str) -> bool:
-    """Look through the whole log for a comma that can only be a decimal sign."""
-    edge = rb"[\s\"]" if separator == SPACES else b'[\n"' + re.escape(separator.encode()) + b"]"
-    return re.search(edge + rb"[-+]?(?:0,\d+|\d+,(?:\d{1,2}|\d{4,}))" + edge, body) is not None
+def _has_decimal_comma(bodies: Iterator[bytes], separator: str) -> bool:
+    """Look through the log for a comma that can only be a decimal sign, as far as is needed."""
+    edge = rb"[\s\"]" if separator == SPACES else b'[\r\n "' + re.escape(separator.encode()) + b"]"
+    number = rb"[-+]?(?:0,\d+|\d+,(?:\d{1,2}|\d{4,}))"
+    sure = re.compile(rb"(?:\A|" + edge + b")" + number + b"(?:" + edge + rb"|\Z)")
+    return any(sure.search(body) for body in bodies)
 
 
 def _find_names(
@@ -236,3 +265,24 @@ def _names_without_header(
             pairs = [split_unit(cell) for cell in cells]
             return number, tuple(name for name, _ in pairs), tuple(unit for _, unit in pairs)
     return None, tuple(f"column {column + 1}" for column in range(width)), ("",) * width
+
+
+def _names_of_settings(
+    path: Path, columns: tuple[str, ...], first: Line, header_line: int | None, header: tuple[str, ...]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the names that run.toml gives, with the units in their brackets.
+
+    Raises
+    ------
+    FileFormatError
+        The file has names of its own, or another number of columns.
+    """
+    if header_line is not None:
+        message = f"run.toml gives columns, but the log names its own: {', '.join(map(repr, header[:8]))}"
+        remedy = f"remove columns for this log in run.toml, or set skip_rows = {header_line} to use them"
+        raise FileFormatError(message, remedy, path=path, line=header_line)
+    width = len(first.cells) - (not first.cells[-1])
+    if len(columns) not in {width, len(first.cells)}:
+        message = f"run.toml names {len(columns)} columns, the rows have {width}"
+        raise FileFormatError(message, "give every column a name", path=path, line=first.number)
+    return columns, tuple(split_unit(name)[1] for name in columns)

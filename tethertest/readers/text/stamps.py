@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import datetime as dt
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, TypeAlias
@@ -110,13 +110,61 @@ def parse_stamps(
         A cell is no stamp, is no possible date, or day and month can be read both ways.
     """
     rows = np.asarray(lines)
-    together = "\n".join(cells)
-    if not together.isascii():
-        together = together.translate(_CHINESE)
-    joined = np.strings.strip(np.array(together.encode(errors="replace").split(b"\n"), dtype=bytes))
-    characters = joined.view(np.uint8).reshape(joined.size, joined.itemsize)
-    parts = {name: np.zeros(joined.size, np.int64) for name in ("first", "second", "third", "clock", "zone")}
-    long_first = np.zeros(joined.size, np.bool_)
+    parts = split_stamps(_characters("\n".join(cells)), path, rows)
+    order = ""
+    if parts.dated:
+        order = settle_order([parts], date_order, path, int(rows[0]))
+    return Stamps(parts.nanoseconds(order, path, rows), order, int(parts.zone[0]) if parts.zoned else None)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StampParts:
+    """The numbers in stamps, before it is settled which of them is the day."""
+
+    date: Integers  #: (3, n) as written; zero without a date
+    clock: Integers  #: (n,) [ns] since midnight
+    zone: Integers  #: (n,) [s] east of UTC
+    long_first: npt.NDArray[np.bool_]  #: (n,) the date begins with four digits
+    dated: bool
+    dotted: bool  #: points stand between the numbers of the dates
+    zoned: bool  #: some stamps have a zone
+
+    def nanoseconds(self, order: str, path: Path, lines: npt.NDArray[np.int64]) -> Integers:
+        """Return (n,) nanoseconds since 1970, or since midnight without a date.
+
+        Raises
+        ------
+        FileFormatError
+            A date is impossible in that order.
+        """
+        if not self.dated:
+            return self.clock
+        days = _days(self.date, order, path, lines)
+        return self.clock + days * 86400 * _SECOND - self.zone * _SECOND
+
+
+def split_stamps(characters: Characters, path: Path, lines: npt.NDArray[np.int64]) -> StampParts:
+    """Split stamps into their numbers.
+
+    Parameters
+    ----------
+    characters : (n, m) uint8
+        UTF-8, zero behind the end of each stamp.
+    path, lines : Path, (n,) int64
+        File and line numbers, for messages.
+
+    Raises
+    ------
+    FileFormatError
+        A cell is no stamp, or only some have a date.
+    """
+    if np.any(characters >= 128):
+        cells = characters.view(f"S{characters.shape[1]}")[:, 0].tolist()
+        characters = _characters(b"\n".join(cells).decode(errors="replace"))
+    count = len(characters)
+    date = np.zeros((3, count), np.int64)
+    clock, zone = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    long_first = np.zeros(count, np.bool_)
     dated: set[bool] = set()
     dotted, zoned = True, False
     for layout, chosen in _by_layout(characters):
@@ -125,29 +173,73 @@ def parse_stamps(
         wrong = np.ones(len(chosen), np.bool_) if match is None else _impossible_clock(part, match)
         if match is None or np.any(wrong):
             row = int(chosen[np.argmax(wrong)])
-            message = f"found {cells[row]!r}, expected a date and time"
+            cell = characters[row].tobytes().rstrip(b"\0").decode(errors="replace")
+            message = f"found {cell!r}, expected a date and time"
             remedy = "export the stamps in full, such as 2026-09-05 14:20:00.000"
-            raise FileFormatError(message, remedy, path=path, line=int(rows[row]))
+            raise FileFormatError(message, remedy, path=path, line=int(lines[row]))
         dated.add(match["first"] is not None)
         if match["first"] is not None:
-            for name in ("first", "second", "third"):
-                parts[name][chosen] = _number(part, match.span(name))
+            for place, name in enumerate(("first", "second", "third")):
+                date[place, chosen] = _number(part, match.span(name))
             long_first[chosen] = len(match["first"]) == 4
             dotted &= match["sign"] == "."
-        parts["clock"][chosen] = _clock(part, match)
-        parts["zone"][chosen] = _offset(part, match)
+        clock[chosen] = _clock(part, match)
+        zone[chosen] = _offset(part, match)
         zoned |= match["zone"] is not None
     if len(dated) > 1:
         message = "some stamps have a date and some have none"
-        raise FileFormatError(message, "export the log again with full stamps", path=path, line=int(rows[0]))
-    total = parts["clock"]
-    order = ""
-    if dated == {True}:
-        order = _date_order(
-            parts["first"], parts["second"], long_first, date_order, dotted, path, int(rows[0])
-        )
-        total = total + _days(parts, order, path, rows) * 86400 * _SECOND - parts["zone"] * _SECOND
-    return Stamps(total, order, int(parts["zone"][0]) if zoned else None)
+        raise FileFormatError(message, "export the log again with full stamps", path=path, line=int(lines[0]))
+    return StampParts(date, clock, zone, long_first, dated == {True}, dotted, zoned)
+
+
+def settle_order(blocks: Iterable[StampParts], wanted: str | None, path: Path, line: int) -> str:
+    """Return the order of day, month and year, as the first dates that leave no choice show it.
+
+    Parameters
+    ----------
+    blocks : iterable of StampParts
+        The stamps of the log from its start; no more are taken than are needed.
+    wanted : str, optional
+        What the settings say; it counts only where the year does not stand first.
+    path, line : Path, int
+        File and line of the first stamp, for the message.
+
+    Raises
+    ------
+    FileFormatError
+        All dates can be read as day and month and as month and day.
+    """
+    first: tuple[int, int] | None = None
+    alike = True
+    for parts in blocks:
+        if first is None:
+            first = int(parts.date[0, 0]), int(parts.date[1, 0])
+            if np.all(parts.long_first):
+                return "ymd"
+            if wanted is not None:
+                return wanted
+            if parts.dotted:
+                return "dmy"
+        day_first, month_first = bool(np.any(parts.date[0] > 12)), bool(np.any(parts.date[1] > 12))
+        if day_first != month_first:
+            return "dmy" if day_first else "mdy"
+        alike &= not day_first and bool(np.all(parts.date[0] == parts.date[1]))
+    if alike:
+        return "dmy"
+    message = "the dates can be read as day/month and as month/day"
+    if first is not None:
+        message = f"the date {first[0]}/{first[1]}/... can be read as day/month and as month/day"
+    remedy = 'set date_order = "dmy" or "mdy" for this log in run.toml'
+    raise FileFormatError(message, remedy, path=path, line=line)
+
+
+def _characters(together: str) -> Characters:
+    """Return (n, m) characters of stamps that are joined by line feeds."""
+    if not together.isascii():
+        together = together.translate(_CHINESE)
+    joined = np.strings.strip(np.array(together.encode(errors="replace").split(b"\n"), dtype=bytes))
+    characters: Characters = joined.view(np.uint8).reshape(joined.size, joined.itemsize)
+    return characters
 
 
 def _match(layout: str) -> re.Match[str] | None:
@@ -160,13 +252,13 @@ def _match(layout: str) -> re.Match[str] | None:
 
 def _by_layout(characters: Characters) -> Iterator[tuple[str, Integers]]:
     """Yield each layout with the rows that have it."""
-    is_digit = (characters >= ord("0")) & (characters <= ord("9"))
-    shapes = np.where(is_digit, np.uint8(ord("0")), characters)
+    zero = np.uint8(ord("0"))
+    shapes = np.where(characters - zero < 10, zero, characters)  # below "0" the difference wraps around
+    whole = shapes.view(f"S{shapes.shape[1]}")[:, 0]
     remaining = np.arange(len(shapes))
     while remaining.size:
-        layout = shapes[remaining[0]]
-        same = np.all(shapes[remaining] == layout, axis=1)
-        yield layout.tobytes().rstrip(b"\0").decode(errors="replace"), remaining[same]
+        same = whole[remaining] == whole[remaining[0]]
+        yield whole[remaining[0]].decode(errors="replace"), remaining[same]
         remaining = remaining[~same]
 
 
@@ -213,30 +305,9 @@ def _offset(part: Characters, match: re.Match[str]) -> Integers:
     return minutes * (-60 if match["zone"].lstrip()[0] == "-" else 60)
 
 
-def _date_order(
-    first: Integers, second: Integers, long_first: npt.NDArray[np.bool_], wanted: str | None, dotted: bool,
-    path: Path, line: int,
-) -> str:  # fmt: skip
-    if np.all(long_first):
-        return "ymd"
-    if wanted is not None:
-        return wanted
-    if dotted:
-        return "dmy"
-    day_first, month_first = bool(np.any(first > 12)), bool(np.any(second > 12))
-    if day_first != month_first:
-        return "dmy" if day_first else "mdy"
-    if not day_first and np.all(first == second):
-        return "dmy"
-    message = f"the date {first[0]}/{second[0]}/... can be read as day/month and as month/day"
-    remedy = 'set date_order = "dmy" or "mdy" for this log in run.toml'
-    raise FileFormatError(message, remedy, path=path, line=line)
-
-
-def _days(parts: dict[str, Integers], order: str, path: Path, rows: npt.NDArray[np.int64]) -> Integers:
+def _days(date: Integers, order: str, path: Path, rows: npt.NDArray[np.int64]) -> Integers:
     """Return days since 1970-01-01."""
-    places = (parts["first"], parts["second"], parts["third"])
-    year, month, day = (places[place] for place in _ORDERS[order])
+    year, month, day = (date[place] for place in _ORDERS[order])
     year = np.where(year < 70, year + 2000, np.where(year < 100, year + 1900, year))
     months = ((year - 1970) * 12 + month - 1).astype("datetime64[M]")
     dates = months.astype("datetime64[D]") + (day - 1)
@@ -246,4 +317,5 @@ def _days(parts: dict[str, Integers], order: str, path: Path, rows: npt.NDArray[
         message = f"there is no day {day[row]} of month {month[row]} when the date is read as {order}"
         remedy = "correct date_order in run.toml, or export the log again"
         raise FileFormatError(message, remedy, path=path, line=int(rows[row]))
-    return dates.astype(np.int64)
+    days: Integers = dates.astype(np.int64)
+    return days

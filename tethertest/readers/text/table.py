@@ -29,7 +29,7 @@ MISSING_TOKENS: Final = frozenset([
     "nan", "n/a", "na", "#n/a", "null", "none", "lost", "-", "--", "---", "----", "overflow",
     "overrange", "ovf", "ovl", "invalid", "error", "inf", "+inf", "-inf",
 ])  # fmt: skip
-_NUMBER: Final = {
+NUMBER_PATTERNS: Final = {
     ".": re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"),
     ",": re.compile(r"[-+]?(?:\d+,?\d*|,\d+)(?:[eE][-+]?\d+)?"),
 }
@@ -114,9 +114,7 @@ def find_rows(
         if quotes and b'"' in text:
             inside = np.cumsum(characters == _QUOTE) % 2 == 1
             if np.any(inside[ends]):
-                line = first_line + int(np.argmax(inside[ends]))
-                message = "a quoted cell is not closed in its row"
-                raise FileFormatError(message, "export the log again", path=path, line=line)
+                raise unclosed_quote(path, first_line + int(np.argmax(inside[ends])))
             is_separator &= ~inside
         counts = np.diff(np.searchsorted(np.flatnonzero(is_separator), ends), prepend=0) + 1
     lengths = np.diff(ends, prepend=-1) - 1
@@ -138,23 +136,40 @@ def check_widths(rows: Rows, minimum: int, maximum: int) -> None:
         Names the first wrong line; a short last row is reported as a cut file.
     """
     wrong = (rows.counts < minimum) | (rows.counts > maximum)
-    expected = f"{minimum}" if minimum == maximum else f"{minimum} to {maximum}"
     if np.any(wrong):
         row = int(np.argmax(wrong))
-        count = int(rows.counts[row])
-        if row == len(rows.counts) - 1 and count < minimum:
-            message = f"the last row is cut: found {count} of {expected} columns"
-            remedy = "copy the whole file from the logger again, or delete this row in a copy of the log"
-        else:
-            message = f"found {count} columns, expected {expected}"
-            remedy = "export the log again; check separator and decimal in run.toml"
-        raise FileFormatError(message, remedy, path=rows.path, line=int(rows.lines[row]))
-    if not rows.newline_at_end and _last_number_is_cut(rows):
-        message = (
-            "the last row is cut: it has no line end and its last number has fewer digits than all others"
-        )
+        last = row == len(rows.counts) - 1
+        line, count = int(rows.lines[row]), int(rows.counts[row])
+        raise wrong_width(rows.path, line, count, minimum, maximum, last=last)
+    if not rows.newline_at_end and last_number_is_cut(rows.body[:-1]):
+        raise cut_row(rows.path, int(rows.lines[-1]))
+
+
+def unclosed_quote(path: Path, line: int) -> FileFormatError:
+    """Return the error of a quote that is still open at the end of its row."""
+    message = "a quoted cell is not closed in its row"
+    return FileFormatError(message, "export the log again", path=path, line=line)
+
+
+def wrong_width(
+    path: Path, line: int, count: int, minimum: int, maximum: int, *, last: bool
+) -> FileFormatError:
+    """Return the error of a row with too few or too many fields."""
+    expected = f"{minimum}" if minimum == maximum else f"{minimum} to {maximum}"
+    if last and count < minimum:
+        message = f"the last row is cut: found {count} of {expected} columns"
         remedy = "copy the whole file from the logger again, or delete this row in a copy of the log"
-        raise FileFormatError(message, remedy, path=rows.path, line=int(rows.lines[-1]))
+    else:
+        message = f"found {count} columns, expected {expected}"
+        remedy = "export the log again; check separator and decimal in run.toml"
+    return FileFormatError(message, remedy, path=path, line=line)
+
+
+def cut_row(path: Path, line: int) -> FileFormatError:
+    """Return the error of a last row whose last number is cut."""
+    message = "the last row is cut: it has no line end and its last number has fewer digits than all others"
+    remedy = "copy the whole file from the logger again, or delete this row in a copy of the log"
+    return FileFormatError(message, remedy, path=path, line=line)
 
 
 def read_columns(
@@ -216,7 +231,7 @@ def read_columns(
 
 def is_number(text: str, decimal: str) -> bool:
     """Return whether a cell is a number with that decimal sign."""
-    return _NUMBER[decimal].fullmatch(text.strip()) is not None
+    return NUMBER_PATTERNS[decimal].fullmatch(text.strip()) is not None
 
 
 def _parsed(rows: Rows, wanted: list[int], texts: Collection[int]) -> pd.DataFrame:
@@ -244,7 +259,7 @@ def _parsed(rows: Rows, wanted: list[int], texts: Collection[int]) -> pd.DataFra
 
 def _converted(cells: pd.Series, rows: Rows, name: str, remarks: list[str]) -> FloatArray:
     """Convert cell by cell, for columns that are not plain numbers throughout."""
-    pattern = _NUMBER[rows.decimal]
+    pattern = NUMBER_PATTERNS[rows.decimal]
     values = np.full(len(cells), np.nan)
     tokens: dict[str, list[int]] = {}
     for row, cell in enumerate(cells.fillna("").astype(object)):
@@ -254,7 +269,7 @@ def _converted(cells: pd.Series, rows: Rows, name: str, remarks: list[str]) -> F
         elif text.lower() in MISSING_TOKENS:
             tokens.setdefault(text, []).append(row)
         elif text:
-            raise _not_a_number(text, rows, name, int(rows.lines[row]))
+            raise no_number(text, rows.path, rows.decimal, name, int(rows.lines[row]))
     for token, where in tokens.items():
         first = rows.lines[where[0]]
         remarks.append(
@@ -263,19 +278,21 @@ def _converted(cells: pd.Series, rows: Rows, name: str, remarks: list[str]) -> F
     return values
 
 
-def _not_a_number(text: str, rows: Rows, name: str, line: int) -> FileFormatError:
-    other = "," if rows.decimal == "." else "."
+def no_number(text: str, path: Path, decimal: str, name: str, line: int) -> FileFormatError:
+    """Return the error of a cell that is neither a number nor a word for a missing one."""
+    other = "," if decimal == "." else "."
     remedy = "export the log again; a logger's text belongs in a comment column"
-    if _NUMBER[other].fullmatch(text):
+    if NUMBER_PATTERNS[other].fullmatch(text):
         remedy = f'set decimal = "{other}" for this log in run.toml if that is its decimal sign'
     elif re.fullmatch(r"[-+]?\d{1,3}(?:[., ']\d{3})+(?:[.,]\d+)?", text):
         remedy = "export the log without thousands separators"
-    message = f"found {text!r} in column {name!r}, expected a number with decimal sign {rows.decimal!r}"
-    return FileFormatError(message, remedy, path=rows.path, line=line)
+    message = f"found {text!r} in column {name!r}, expected a number with decimal sign {decimal!r}"
+    return FileFormatError(message, remedy, path=path, line=line)
 
 
-def _last_number_is_cut(rows: Rows) -> bool:
-    last_lines = rows.body[:-1].split(b"\n")[-201:]
+def last_number_is_cut(text: bytes) -> bool:
+    """Return whether the last number of a text without line end has fewer decimals than those above it."""
+    last_lines = text.rsplit(b"\n", 201)[-201:]
     pattern = re.compile(rb"[.,](\d+)(?:[eE][-+]?\d+)?\"?\s*$")
     found = [pattern.search(line) for line in last_lines]
     digits = [len(match[1]) if match else 0 for match in found]

@@ -5,49 +5,42 @@ from __future__ import annotations
 import datetime as dt
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-
 from tethertest.errors import FileFormatError
+from tethertest.readers.calibration import COLUMNS as CALIBRATION_COLUMNS
 from tethertest.readers.text.layout import Layout
-from tethertest.readers.text.stamps import parse_stamps, time_zone_of
-from tethertest.readers.text.table import Columns, Rows
-from tethertest.records.arrays import FloatArray
+from tethertest.readers.text.stamps import parse_stamps
+from tethertest.readers.timeunits import SECONDS, calendar_start, epoch_start, is_time_name, unit_in_name
 from tethertest.records.run import Log
 
-_NAMES: Final = frozenset([
-    "time", "timestamp", "time stamp", "datetime", "date time", "date", "x_value", "elapsed",
-    "elapsed time", "relative time", "epoch", "unix", "unix time", "seconds", "sec", "zeit",
-    "temps", "tiempo", "tempo", "时间", "采样时间", "时刻",
-])  # fmt: skip
-_NAME_WITH_UNIT = re.compile(r"(?:time|t|elapsed|timestamp|epoch)[_ ](s|sec|ms|us|min|h)", re.IGNORECASE)
-_SECONDS: Final = {
-    "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "秒": 1.0, "ms": 1e-3, "毫秒": 1e-3,
-    "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9, "min": 60.0, "分": 60.0, "h": 3600.0, "hr": 3600.0,
-}  # fmt: skip
-#: seconds since 1970 of the years 1979 to 2065; other counters are told by their size in this unit
-_EPOCH: Final = (3e8, 3e9)
-#: a LabVIEW counter of seconds starts in 1904, this many seconds before 1970
-_LABVIEW_EPOCH: Final = 2_082_844_800
 _START = re.compile(r"start(?:\s*time|ed)?(?:\s+at)?\s*[:=]\s*(.+)", re.IGNORECASE)
+#: a first column without a name is the time only if nearly all of its steps go up
+_RISING_STEPS: Final = 0.9
+#: a tick of a counter since 1970 is a nanosecond, of one in days less than a tenth of a microsecond
+_DECIMALS: Final = {1.0: 9, 1e-3: 6, 1e-6: 3, 1e-9: 0}
+_DAY_DECIMALS: Final = 12
 
 
 @dataclass(frozen=True, slots=True)
 class TimeColumns:
-    """The columns that hold the time: one counter, or one or two of stamps."""
+    """What the time comes from: a counter, one or two columns of stamps, or the rate that run.toml gives."""
 
-    stamps: tuple[int, ...]  #: date and time, or one column
-    counter: int | None
-    remark: str = ""
+    stamps: tuple[int, ...] = ()  #: date and time, or one column
+    counter: int | None = None
+    rate: float | None = None  #: [Hz]
+    remarks: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TimeAxis:
-    """Time of every row."""
+@dataclass(frozen=True, slots=True)
+class Counter:
+    """What a column of numbers counts."""
 
-    time: FloatArray  #: (n,) [s] since `start`
+    factor: float  #: seconds per count, for numbers that are kept as written
+    decimals: int | None  #: of a tick, where the time counts from the first row
+    seconds_per_tick: tuple[float, float]  #: numerator and denominator, each exact
     start: dt.datetime | None
     date_order: str
     remarks: tuple[str, ...]
@@ -55,116 +48,141 @@ class TimeAxis:
 
 def columns_named_time(layout: Layout) -> list[int]:
     """Return the columns whose name says that they are the time; a T may be a temperature."""
-    found = []
-    for column, (name, unit) in enumerate(zip(layout.names, layout.units, strict=True)):
-        letter = (name == "t" and not unit) or (name in {"t", "T"} and unit.lower() in _SECONDS)
-        if letter or name.lower() in _NAMES or _NAME_WITH_UNIT.fullmatch(name):
-            found.append(column)
-    return found
+    named = enumerate(zip(layout.names, layout.units, strict=True))
+    return [column for column, (name, unit) in named if is_time_name(name, unit)]
 
 
-def find_time(layout: Layout, path: Path) -> TimeColumns:
-    """Choose the time column by name, stamps, unit, then place.
+def find_time(layout: Layout, path: Path, settings: Log | None) -> TimeColumns:
+    """Choose the time as run.toml says, else by name, stamps, unit, then place.
 
     Raises
     ------
     FileFormatError
-        No column can be the time.
+        No column can be the time, or not the one that run.toml names.
     """
     named = columns_named_time(layout)
+    if settings is not None and settings.rate is not None:
+        remarks = [f"the time is counted from rate = {settings.rate:g} Hz in run.toml"]
+        remarks += [f"column {layout.names[column]!r} is not used as the time" for column in named]
+        return TimeColumns(rate=settings.rate, remarks=tuple(remarks))
     of_kind = {
         kind: [column for column, found in enumerate(layout.kinds) if found == kind]
         for kind in ("number", "datetime", "date", "time", "text")
     }
+    if settings is not None and settings.time is not None:
+        return _wanted(layout, path, settings.time, of_kind["time"])
     for column in named:
         if layout.kinds[column] == "number":
-            return TimeColumns((), column)
+            return TimeColumns(counter=column)
     if of_kind["datetime"]:
-        return TimeColumns((of_kind["datetime"][0],), None)
+        return TimeColumns((of_kind["datetime"][0],))
     if of_kind["date"] and of_kind["time"]:
-        return TimeColumns((of_kind["date"][0], of_kind["time"][0]), None)
+        return TimeColumns((of_kind["date"][0], of_kind["time"][0]))
     if of_kind["time"]:
-        return TimeColumns((of_kind["time"][0],), None, "the stamps have a time of day but no date")
+        remark = "the stamps have a time of day but no date"
+        return TimeColumns((of_kind["time"][0],), remarks=(remark,))
     for column in of_kind["number"]:
-        if layout.units[column].lower() in _SECONDS:
-            return TimeColumns((), column)
+        if layout.units[column].lower() in SECONDS:
+            return TimeColumns(counter=column)
     wrong = next((column for column in named if layout.kinds[column] == "text"), None)
     if wrong is not None:
-        message = f"the time column {layout.names[wrong]!r} holds text, expected seconds or stamps"
-        raise FileFormatError(
-            message, "export the log again with full stamps or seconds", path=path, line=layout.first_line
-        )
-    if layout.kinds[0] == "number" and (not layout.names[0] or layout.header_line is None):
-        return TimeColumns((), 0, "the first column has no name and is taken as the time in seconds")
+        raise _text_as_time(layout, path, wrong)
+    nameless = not layout.names[0] or (layout.header_line is None and layout.numbered)
+    if layout.kinds[0] == "number" and nameless and _rises(layout.first_column):
+        remark = "the first column has no name and is taken as the time in seconds"
+        return TimeColumns(counter=0, remarks=(remark,))
+    raise _no_time(layout, path)
+
+
+def _wanted(layout: Layout, path: Path, name: str, clocks: list[int]) -> TimeColumns:
+    if name not in layout.names:
+        message = f"run.toml says time = {name!r}, which the log does not have"
+        remedy = f"use one of {', '.join(repr(known) for known in layout.names[:8])}"
+        raise FileFormatError(message, remedy, path=path, line=layout.header_line)
+    column = layout.names.index(name)
+    kind = layout.kinds[column]
+    if kind == "number":
+        return TimeColumns(counter=column)
+    if kind == "date" and clocks:
+        return TimeColumns((column, clocks[0]))
+    if kind in {"datetime", "date", "time"}:
+        return TimeColumns((column,))
+    raise _text_as_time(layout, path, column)
+
+
+def _rises(cells: tuple[str, ...]) -> bool:
+    numbers = []
+    for cell in cells:
+        try:
+            numbers.append(float(cell.replace(",", ".")))
+        except ValueError:
+            continue
+    steps = [later > earlier for earlier, later in pairwise(numbers)]
+    return sum(steps) >= _RISING_STEPS * len(steps)
+
+
+def _text_as_time(layout: Layout, path: Path, column: int) -> FileFormatError:
+    holds = "nothing" if layout.kinds[column] == "blank" else "text"
+    message = f"the time column {layout.names[column]!r} holds {holds}, expected seconds or stamps"
+    remedy = "export the log again with full stamps or seconds"
+    return FileFormatError(message, remedy, path=path, line=layout.first_line)
+
+
+def _no_time(layout: Layout, path: Path) -> FileFormatError:
     message = f"found no time column among {', '.join(repr(name) for name in layout.names[:8])}"
-    remedy = "export the log with its time; its column is called time or timestamp, or has the unit s"
-    raise FileFormatError(message, remedy, path=path, line=layout.header_line)
+    if tuple(name.lower() for name in layout.names[:2]) == CALIBRATION_COLUMNS:
+        message += ": it is a calibration of a load cell, not a log"
+        remedy = "name it in the rig file, as log under calibration of the sensor"
+        return FileFormatError(message, remedy, path=path, line=layout.header_line)
+    lines = (
+        f'time = "{layout.names[0]}" if that column is the time, or rate = "100 Hz" if rows are even in time'
+    )
+    remedy = f"write for this log in run.toml: {lines}; else export it again with its time"
+    return FileFormatError(message, remedy, path=path, line=layout.header_line)
 
 
-def read_time(
-    rows: Rows, columns: Columns, layout: Layout, chosen: TimeColumns, settings: Log | None
-) -> TimeAxis:
-    """Turn the chosen columns into seconds.
+def read_counter(
+    layout: Layout, column: int, path: Path, settings: Log | None, zone: dt.tzinfo | None
+) -> Counter:
+    """Return what the time column counts, by its unit and by the size of its first number.
 
     Raises
     ------
     FileFormatError
-        A cell of the time is blank or unreadable, its unit is unknown, or its date can be read two ways.
+        Its unit is none of time.
     """
-    zone = time_zone_of(settings.time_zone if settings is not None else None, rows.path)
-    order = settings.date_order if settings is not None else None
-    remarks = (chosen.remark,) if chosen.remark else ()
-    if chosen.counter is None:
-        parts = [columns.texts[column] for column in chosen.stamps]
-        for part in parts:
-            if "" in part:
-                raise _blank_time(rows, part.index(""))
-        cells = parts[0] if len(parts) == 1 else [" ".join(pair) for pair in zip(*parts, strict=True)]
-        stamps = parse_stamps(cells, rows.path, rows.lines, order)
-        return TimeAxis(stamps.seconds(), stamps.start(zone), stamps.date_order, remarks)
-    values = columns.numbers[chosen.counter]
-    holes = np.isnan(values)
-    if np.any(holes):
-        raise _blank_time(rows, int(np.argmax(holes)))
-    name, unit = layout.names[chosen.counter], layout.units[chosen.counter]
-    if settings is not None and name in settings.units:
-        unit = settings.units[name]
-    suffix = _NAME_WITH_UNIT.fullmatch(name)
-    unit = unit or (suffix[1] if suffix else "")
-    epoch = _epoch_start(values, unit)
+    name, unit = layout.names[column], layout.units[column]
+    written = settings.units.get(name) if settings is not None else None
+    unit = written or unit or unit_in_name(name)
+    try:
+        first = float(layout.first_cells[column].replace(",", "."))
+    except ValueError:  # a row without a time is refused when it is read
+        first = 0.0
+    try:
+        calendar = calendar_start(first, unit) if written else None
+    except OverflowError as error:
+        message = f"the time column {name!r} begins with {first:g}, which is no day of {unit!r}"
+        remedy = "correct the unit of the time for this log in run.toml"
+        raise FileFormatError(message, remedy, path=path, line=layout.first_line) from error
+    if calendar is not None:
+        remark = f"the time counts days, as {unit} does"
+        scale = (86400.0, 10.0**_DAY_DECIMALS)
+        return Counter(86400.0, _DAY_DECIMALS, scale, calendar.replace(tzinfo=zone), "", (remark,))
+    epoch = epoch_start(first, unit)
     if epoch is not None:
         start, factor, remark = epoch
-        time = (values - values[0]) * factor
-        return TimeAxis(time, start, "", (*remarks, remark))
+        return Counter(factor, _DECIMALS[factor], (1.0, 1e9), start, "", (remark,))
+    remarks: tuple[str, ...] = ()
     if not unit:
-        remarks = (*remarks, f"the time {name!r} has no unit and is taken as seconds")
-    elif unit.lower() not in _SECONDS:
+        remarks = (f"the time {name!r} has no unit and is taken as seconds",)
+    elif unit.strip().lower() not in SECONDS:
         message = f"the time column {name!r} has the unit {unit!r}, expected s, ms, us, min or h"
         remedy = f'set units = {{ "{name}" = "s" }} for this log in run.toml if it counts seconds'
-        raise FileFormatError(message, remedy, path=rows.path, line=layout.header_line)
-    start_time, date_order = _start_from_comments(rows.path, layout, order, zone)
-    return TimeAxis(values * _SECONDS.get(unit.lower(), 1.0), start_time, date_order, remarks)
-
-
-def _blank_time(rows: Rows, row: int) -> FileFormatError:
-    message = "the row has no time"
-    return FileFormatError(message, "export the log again", path=rows.path, line=int(rows.lines[row]))
-
-
-def _epoch_start(values: FloatArray, unit: str) -> tuple[dt.datetime, float, str] | None:
-    """Recognise counters since 1970 or 1904 by their size."""
-    first = float(values[0])
-    written = _SECONDS.get(unit.lower())
-    for name in ("s", "ms", "us", "ns"):
-        factor = _SECONDS[name]
-        if written not in {None, factor}:
-            continue
-        seconds = first * factor
-        zero = _LABVIEW_EPOCH if name == "s" and seconds >= _EPOCH[1] else 0
-        if _EPOCH[0] <= seconds - zero < _EPOCH[1]:
-            start = dt.datetime(1970, 1, 1, tzinfo=dt.UTC) + dt.timedelta(seconds=seconds - zero)
-            return start, factor, f"the time counts {name} since {1904 if zero else 1970}, UTC"
-    return None
+        raise FileFormatError(message, remedy, path=path, line=layout.header_line)
+    order = settings.date_order if settings is not None else None
+    start_time, date_order = _start_from_comments(path, layout, order, zone)
+    factor = SECONDS.get(unit.strip().lower(), 1.0)
+    return Counter(factor, None, (0.0, 1.0), start_time, date_order, remarks)
 
 
 def _start_from_comments(

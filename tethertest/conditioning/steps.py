@@ -1,0 +1,106 @@
+"""Steps: the level of a load cell leaps from one sample to the next and stays, and no other cell says so."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tethertest.records.arrays import BoolArray, FloatArray
+from tethertest.records.channel import Channel, Flag
+from tethertest.signal.filters import filled
+from tethertest.signal.noise import white_noise
+
+#: height of the edge, in standard deviations of one sample
+HEIGHT_SIGMAS = 12.0
+#: the edge is steeper by this factor than every step around it: a snap rises over many samples
+ISOLATION = 3.0
+#: samples on either side that are looked at for that, and that make up the level beside the edge
+AROUND, BESIDE = 10, 3
+#: levels beside the edge differ by this share of it: at a spike they do not
+STAYS_NEAR = 0.7
+#: the difference to the other load cell changes by this share of the edge beside it (within the first time),
+#: and by as much as the edge within this share farther out: snaps come and go, a zero stays [s]
+STAYS, NEAR_TIME = 0.5, 0.3
+SAME_HEIGHT, FAR_TIME = 0.3, 3.0
+
+
+def with_steps_flagged(channels: Sequence[Channel]) -> tuple[Channel, ...]:
+    """Return the channels with `Flag.STEP` on the first sample after a leap of a load cell's zero.
+
+    Parameters
+    ----------
+    channels : sequence of Channel
+        All channels of a run on one clock; tensions [N] are looked at, each against the others.
+
+    Returns
+    -------
+    tuple of Channel
+        The same channels, in the same order.
+    """
+    cells = [channel for channel in channels if channel.kind == "tension" and channel.usable.any()]
+    return tuple(
+        channel.with_flags(_steps(channel, [other for other in cells if other is not channel]), Flag.STEP)
+        if any(channel is cell for cell in cells)
+        else channel
+        for channel in channels
+    )
+
+
+def _steps(channel: Channel, others: Sequence[Channel]) -> BoolArray:
+    found = np.zeros(channel.time.size, dtype=bool)
+    values = filled(channel)
+    sigma = white_noise(values)
+    if sigma == 0.0 or values.size < 4 * AROUND:
+        return found
+    edge = np.diff(values)
+    for row in np.flatnonzero(np.abs(edge) > HEIGHT_SIGMAS * np.sqrt(2.0) * sigma):
+        if _alone(values, edge, int(row), channel.usable) and _stays(
+            channel, values, others, int(row), edge[row]
+        ):
+            found[row + 1] = True
+    return found
+
+
+def _alone(values: FloatArray, edge: FloatArray, row: int, usable: BoolArray) -> bool:
+    """Return whether an edge stands alone between two levels."""
+    if row < AROUND or row + AROUND + 1 >= edge.size or not usable[row - BESIDE : row + BESIDE + 2].all():
+        return False
+    around = np.concatenate((edge[row - AROUND : row], edge[row + 1 : row + AROUND + 1]))
+    if abs(edge[row]) <= ISOLATION * float(np.max(np.abs(around))):
+        return False
+    before = float(np.mean(values[row - BESIDE + 1 : row + 1]))
+    after = float(np.mean(values[row + 1 : row + 1 + BESIDE]))
+    return bool((after - before) / edge[row] > STAYS_NEAR)
+
+
+def _stays(channel: Channel, values: FloatArray, others: Sequence[Channel], row: int, height: float) -> bool:
+    """Return whether the new level stays, against the other load cells where there are any."""
+    near, far = (max(round(length * channel.rate), AROUND) for length in (NEAR_TIME, FAR_TIME))
+    first, last = max(row + 1 - far, 0), min(row + 1 + far, values.size)
+    time, own = channel.time[first:last], values[first:last]
+    here = row + 1 - first
+    if here < AROUND or own.size - here < AROUND:
+        return False
+    beside = slice(max(here - near, 0), here + near)
+    if not others:
+        return bool(_jump(own[beside], min(here, near)) / height > STAYS)
+    for other in others:
+        apart = own - np.interp(time, other.time, filled(other))
+        if _level_change(apart[beside], min(here, near)) / height < STAYS:
+            return False
+        if abs(_level_change(apart, here) / height - 1.0) > SAME_HEIGHT:
+            return False
+    return True
+
+
+def _level_change(values: FloatArray, here: int) -> float:
+    return float(np.median(values[here:]) - np.median(values[:here]))
+
+
+def _jump(values: FloatArray, here: int) -> float:
+    """Return what lies between straight lines through the values before and after, at the edge."""
+    row = np.arange(values.size, dtype=np.float64)
+    before = np.polynomial.polynomial.polyfit(row[:here] - here, values[:here], 1)
+    after = np.polynomial.polynomial.polyfit(row[here:] - here, values[here:], 1)
+    return float(after[0] - before[0])

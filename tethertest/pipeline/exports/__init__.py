@@ -1,0 +1,1 @@
+"""Conditioned channels in the files of other programs, one format per module."""

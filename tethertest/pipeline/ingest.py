@@ -1,0 +1,126 @@
+"""Raw logs of a run folder into one file of its conditioned channels."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from tethertest.errors import DataError, TethertestError
+from tethertest.pipeline.conditioned import conditioned, placed
+from tethertest.pipeline.long_runs.columns import Sizes
+from tethertest.pipeline.long_runs.ingest import Progress, Sources, ingest_long
+from tethertest.pipeline.long_runs.pieces import pieces_of
+from tethertest.pipeline.stored import store_header
+from tethertest.readers import load_run, read_log
+from tethertest.records.channel import Finding
+from tethertest.records.run import Run
+from tethertest.store import is_store, write_store
+
+#: name of a run's store in its folder of reports
+STORE_NAME = "run.h5"
+#: a text log takes some six times its size in memory while it is read and conditioned [bytes]
+LARGEST_WHOLE = 256_000_000
+#: logs of numbers shrink to about a part of this in gzip and zip, known by their first bytes
+UNPACKED, _PACKED = 5, (b"\x1f\x8b", b"PK")
+
+
+@dataclass(frozen=True, slots=True)
+class Ingested:
+    """What was written."""
+
+    run: str  #: its id
+    path: Path
+    size: int  #: of the file [bytes]
+    channels: dict[str, int]  #: name -> samples
+    findings: dict[str, int]  #: severity -> how many
+
+
+def default_store(folder: Path) -> Path:
+    """Return where the store of a run goes unless it is told: beside its report, not among raw logs."""
+    return Path("reports") / folder.resolve().name / STORE_NAME
+
+
+def ingest_run(
+    folder: Path,
+    output: Path | None = None,
+    rigs: Path | None = None,
+    *,
+    largest: int = LARGEST_WHOLE,
+    progress: Progress = lambda words, share: None,
+) -> Ingested:
+    """Condition a run and write its store.
+
+    Parameters
+    ----------
+    folder : Path
+        Run folder; nothing in it is changed.
+    output : Path, optional
+        The store; `default_store` if absent.
+    rigs : Path, optional
+        Folder of rig files; found upwards from the run folder if absent.
+    largest : int, optional
+        Logs larger than this [bytes] are conditioned in pieces.
+    progress : callable, optional
+        Is told what is being done with logs in pieces, and which share of it is done where that is known.
+
+    Raises
+    ------
+    TethertestError
+        Anything in the files that the user can mend, or a store that cannot be written there.
+    """
+    run = load_run(folder, rigs)
+    target = default_store(run.folder) if output is None else output
+    check_target(target, run)
+    try:
+        samples, findings = _ingested(run, target, largest, progress)
+    except DataError as error:
+        raise placed(error, run) from error
+    severities = [finding.severity for finding in findings]
+    counts = {severity: severities.count(severity) for severity in dict.fromkeys(severities)}
+    return Ingested(run.file.id, target, target.stat().st_size, samples, counts)
+
+
+def _ingested(
+    run: Run, target: Path, largest: int, progress: Progress
+) -> tuple[dict[str, int], Sequence[Finding]]:
+    """Write the store, and return samples by channel and the findings."""
+    long = {log.key: run.folder / log.file for log in run.file.log if _size(run.folder / log.file) > largest}
+    whole = {log.key: read_log(run.folder / log.file, log) for log in run.file.log if log.key not in long}
+    if long:
+        pieces = {log.key: pieces_of(long[log.key], log) for log in run.file.log if log.key in long}
+        sources = Sources(whole, pieces)
+        return ingest_long(run, sources, target, partial(store_header, run), progress, Sizes())
+    measured = conditioned(run, whole)
+    write_store(target, store_header(run, whole), measured)
+    return {channel.name: channel.time.size for channel in measured.channels}, measured.findings
+
+
+def _size(path: Path) -> int:
+    """Return the bytes that a log has when it is unpacked, about."""
+    with path.open("rb") as file:
+        packed = file.read(2) in _PACKED
+    return path.stat().st_size * (UNPACKED if packed else 1)
+
+
+def check_target(target: Path, run: Run) -> None:
+    """Refuse to write a store over anything but an older store.
+
+    Raises
+    ------
+    TethertestError
+        Something else stands there, such as a raw log.
+    """
+    whole = target.resolve()
+    inputs = {(run.folder / log.file).resolve() for log in run.file.log} | {
+        (run.folder / "run.toml").resolve(),
+        run.rig_path.resolve(),
+    }
+    if whole in inputs:
+        message = "that is a file of the run itself"
+        raise TethertestError(message, "name another file with -o", path=target)
+    if os.path.exists(whole) and not is_store(whole):  # noqa: PTH110 - a name too long is told when written
+        message = "something else than a run store stands here, and is left alone"
+        raise TethertestError(message, "remove it, or name another file with -o", path=target)

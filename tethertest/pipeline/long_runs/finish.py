@@ -1,0 +1,165 @@
+"""Last pass: final samples of long logs into the store, with what is found in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tethertest.conditioning.flags import (
+    SPAN_APART,
+    WORDS,
+    flag_finding,
+    sensor_of,
+    spans_of,
+    with_range_flagged,
+)
+from tethertest.conditioning.plausible import hole_findings
+from tethertest.conditioning.rest import RunWindows
+from tethertest.pipeline.long_runs.columns import Sizes, blocks
+from tethertest.pipeline.long_runs.noise import white_noise_of
+from tethertest.pipeline.long_runs.rest import Zeroed
+from tethertest.records.arrays import FloatArray
+from tethertest.records.channel import Channel, Finding, Flag
+from tethertest.records.run import Run
+from tethertest.store.write import StoreWriter
+
+
+class Final:
+    """One sensor of a long log, with its final flags; what it finds grows as its blocks are read once."""
+
+    def __init__(self, sensor: Zeroed, run: Run, windows: RunWindows, sizes: Sizes) -> None:
+        self._sensor = sensor
+        self._run = run
+        self._windows = windows
+        self._sizes = sizes
+        self._spans: dict[Flag, list[tuple[float, float]]] = {flag: [] for flag in WORDS}
+        self._counts = dict.fromkeys(WORDS, 0)
+        self._excluded = [0 for _ in run.file.exclude]
+        self._latest: float | None = None  #: time of the latest usable sample [s]
+        self._holes: list[Finding] = []
+
+    @property
+    def rows(self) -> int:
+        """Samples."""
+        return self._sensor.log.record.rows
+
+    @property
+    def block(self) -> int:
+        """Samples at once."""
+        return self._sizes.block
+
+    def channel(self, start: int, stop: int) -> Channel:
+        """Return some samples as they go into the store."""
+        tared = self._sensor.channel(start, stop)
+        flagged = with_range_flagged(tared, sensor_of(self._run.rig, tared))
+        for item in self._run.file.exclude:
+            if item.channel == flagged.name:
+                inside = (flagged.time >= item.span[0]) & (flagged.time <= item.span[1])
+                flagged = flagged.with_flags(inside, Flag.EXCLUDED)
+        return flagged
+
+    def about(self) -> Channel:
+        """Return everything but the samples, the noise of one of them included."""
+
+        def values(start: int, stop: int) -> FloatArray:
+            part = self.channel(start, stop)
+            usable = part.usable
+            if not usable.any():
+                return np.zeros(part.values.size)
+            return np.interp(part.time, part.time[usable], part.values[usable])
+
+        return replace(self._sensor.about, noise=white_noise_of(values, self.rows, self._sizes.whole))
+
+    def note(self, channel: Channel) -> None:
+        """Note what a block holds; blocks come in their order, each once."""
+        for flag, spans in self._spans.items():
+            marked = (channel.flags & np.uint16(flag)) != 0
+            if not marked.any():
+                continue
+            self._counts[flag] += int(np.count_nonzero(marked))
+            for start, stop in spans_of(channel, marked):
+                if spans and start - spans[-1][1] <= SPAN_APART:
+                    spans[-1] = (spans[-1][0], stop)
+                else:
+                    spans.append((start, stop))
+        for number, item in enumerate(self._run.file.exclude):
+            if item.channel == channel.name:
+                inside = (channel.time >= item.span[0]) & (channel.time <= item.span[1])
+                self._excluded[number] += int(np.count_nonzero(inside))
+        usable = channel.time[channel.usable]
+        if channel.kind == "displacement" and usable.size:
+            bare = usable if self._latest is None else np.concatenate(([self._latest], usable))
+            zeros = np.zeros(bare.size)
+            seen = replace(channel, time=bare, values=zeros, flags=zeros.astype(np.uint16))
+            self._holes += hole_findings([seen], self._windows.steady, self._run.file.drive.frequency)
+            self._latest = float(usable[-1])
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What all blocks held."""
+        name = self._sensor.about.name
+        by_hand = [
+            Finding(
+                name,
+                "excluded",
+                f"{item.span[0]:g}-{item.span[1]:g} s excluded by hand: {item.reason}",
+                "note",
+                (item.span,),
+                count,
+            )
+            for item, count in zip(self._run.file.exclude, self._excluded, strict=True)
+            if item.channel == name
+        ]
+        flags = [
+            flag_finding(name, flag, tuple(spans), self._counts[flag])
+            for flag, spans in self._spans.items()
+            if spans
+        ]
+        return [*by_hand, *self._holes, *flags]
+
+
+def final_channels(
+    store: StoreWriter,
+    run: Run,
+    finals: Mapping[str, Final],
+    others: Sequence[Channel],
+    progress: Callable[[str, float | None], None],
+) -> dict[str, int]:
+    """Write all channels in the order of the rig's sensors, and return how many samples each has.
+
+    Parameters
+    ----------
+    store : StoreWriter
+        The new store.
+    run : Run
+        The run and its rig.
+    finals : mapping of str to Final
+        Sensors of long logs, by name.
+    others : sequence of Channel
+        Channels that are in memory.
+    progress : callable
+        Is told what is being done.
+    """
+    whole = {channel.name: channel for channel in others}
+    result: dict[str, int] = {}
+    for sensor in run.rig.sensor:
+        if sensor.name in whole:
+            channel = whole[sensor.name]
+            series = store.channel(sensor.name)
+            series.append(channel.time, channel.values, channel.flags)
+            series.describe(channel)
+            result[sensor.name] = channel.time.size
+        elif sensor.name in finals:
+            final = finals[sensor.name]
+            about = final.about()
+            series = store.channel(sensor.name)
+            for start, stop in blocks(final.rows, final.block):
+                channel = final.channel(start, stop)
+                final.note(channel)
+                series.append(channel.time, channel.values, channel.flags)
+                progress(f"writing {sensor.name}", stop / final.rows)
+            series.describe(about)
+            result[sensor.name] = final.rows
+    return result

@@ -1,0 +1,152 @@
+"""Second pass: every sample of a log calibrated and flagged, and a thinned copy for clocks and windows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tethertest.conditioning.flags import sensor_of
+from tethertest.conditioning.load_cells import calibrated
+from tethertest.conditioning.spikes import with_spikes_flagged
+from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes, blocks
+from tethertest.pipeline.long_runs.noise import quantum_of, white_noise_of
+from tethertest.pipeline.long_runs.plateaus import Plateaus, plateaus_of
+from tethertest.pipeline.long_runs.record import Record
+from tethertest.records.arrays import FloatArray
+from tethertest.records.channel import Channel, Finding, RawChannel, RawLog
+from tethertest.records.run import Run
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Flagged:
+    """A log on disk with the flags of every sample."""
+
+    record: Record
+    run: Run
+    flags: tuple[Column, ...]  #: of each sensor
+    findings: tuple[Finding, ...]  #: from calibration
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Its sensors."""
+        return tuple(channel.name for channel in self.record.channels(0, 1))
+
+    def channel(self, number: int, start: int, stop: int) -> Channel:
+        """Return some samples of one sensor, calibrated and flagged, on the log's clock."""
+        channel = _calibrated(self.record.channels(start, stop)[number], self.run)[0]
+        return replace(channel, flags=self.flags[number].read(start, stop))
+
+
+def flagged(
+    record: Record, run: Run, scratch: Scratch, sizes: Sizes, progress: Callable[[int], None]
+) -> Flagged:
+    """Flag plateaus and spikes of a log.
+
+    Parameters
+    ----------
+    record : Record
+        The log.
+    run : Run
+        The run and its rig.
+    scratch : Scratch
+        For further columns.
+    sizes : Sizes
+        Rows at once.
+    progress : callable
+        Is told the number of rows so far.
+    """
+    count = len(record.log.pairings)
+    plateaus = [_plateaus(record, number, sizes) for number in range(count)]
+    sigmas = [_sigma(record, number, run, sizes) for number in range(count)]
+    columns = tuple(scratch.column("<u2") for _ in range(count))
+    findings: dict[tuple[str, str], Finding] = {}
+    for start, stop in blocks(record.rows, sizes.block):
+        first = max(start - sizes.context, 0)
+        channels = []
+        for number, logged in enumerate(record.channels(first, stop + sizes.context)):
+            channel, found = _calibrated(plateaus[number].marked(logged, first), run)
+            channels.append(channel)
+            findings |= {(item.subject, item.kind): item for item in found}
+        for column, channel in zip(columns, with_spikes_flagged(channels, sigmas), strict=True):
+            column.append(channel.flags[start - first : stop - first])
+        progress(stop)
+    return Flagged(record, run, columns, tuple(findings.values()))
+
+
+def thinned(log: Flagged, factor: int, sizes: Sizes) -> RawLog:
+    """Return a log as its logger would have written it more slowly: means over the usable samples.
+
+    Parameters
+    ----------
+    log : Flagged
+        The log.
+    factor : int
+        Rows per row of the copy.
+    sizes : Sizes
+        Rows at once.
+    """
+    record = log.record
+    times: list[FloatArray] = []
+    values: list[list[FloatArray]] = [[] for _ in log.flags]
+    block = max(sizes.block // factor, 1) * factor
+    for start, stop in blocks(record.rows // factor * factor, block):
+        times.append(record.time(start, stop).reshape(-1, factor).mean(axis=1))
+        for number, channel in enumerate(record.channels(start, stop)):
+            usable = replace(channel, flags=log.flags[number].read(start, stop)).usable
+            logged = record.columns[2 + number].read(start, stop)
+            values[number].append(_means(logged, usable, factor))
+    time = np.concatenate(times) - record.log.start
+    channels = tuple(
+        RawChannel(pairing.raw.name, pairing.raw.unit, time, np.concatenate(parts))
+        for pairing, parts in zip(record.log.pairings, values, strict=True)
+    )
+    return replace(record.log.raw, channels=channels, remarks=())
+
+
+def _means(values: FloatArray, usable: np.ndarray, factor: int) -> FloatArray:
+    """Return means over the usable values of every `factor` samples, NaN where there are none."""
+    count = usable.reshape(-1, factor).sum(axis=1)
+    total = np.where(usable, values, 0.0).reshape(-1, factor).sum(axis=1)
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def _plateaus(record: Record, number: int, sizes: Sizes) -> Plateaus:
+    def read(start: int, stop: int) -> Channel:
+        return record.channels(start, stop)[number]
+
+    def noise() -> float:
+        def values(start: int, stop: int) -> FloatArray:
+            return _without_holes(read(start, stop))
+
+        rounding = quantum_of(values, record.rows, sizes.whole)
+        return max(rounding, white_noise_of(values, record.rows, sizes.whole))
+
+    return plateaus_of(read, record.rows, sizes.block, noise)
+
+
+def _sigma(record: Record, number: int, run: Run, sizes: Sizes) -> float:
+    """Return the noise of one sample, as calibrated."""
+
+    def values(start: int, stop: int) -> FloatArray:
+        return _without_holes(_calibrated(record.channels(start, stop)[number], run)[0])
+
+    return white_noise_of(values, record.rows, sizes.whole)
+
+
+def _calibrated(channel: Channel, run: Run) -> tuple[Channel, tuple[Finding, ...]]:
+    sensor = sensor_of(run.rig, channel)
+    if sensor.kind != "tension":
+        return channel, ()
+    return calibrated(channel, sensor, run.rig, run.file.date.date())
+
+
+def _without_holes(channel: Channel) -> FloatArray:
+    """Return the values, straight across holes; zero where there are nothing but holes."""
+    known = np.isfinite(channel.values)
+    if known.all():
+        return channel.values
+    if not known.any():
+        return np.zeros(channel.values.size)
+    return np.interp(channel.time, channel.time[known], channel.values[known])

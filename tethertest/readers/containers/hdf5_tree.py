@@ -1,0 +1,258 @@
+"""An HDF5 file as a tree: only hard links are followed, and only what lies in the file itself is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from math import prod
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from tethertest.errors import FileFormatError
+from tethertest.readers.containers.limits import CELLS, DEPTH, OBJECTS, TEXT_BYTES
+from tethertest.readers.containers.table import Column, Numbers
+from tethertest.readers.containers.tree import NAME_LISTS, UNIT_KEYS, Branch, Leaf, Records, facts_of
+
+#: deflate, shuffle, fletcher32, szip, nbit, scaleoffset; lzf comes with h5py
+_FILTERS: Final = {
+    1: "deflate",
+    2: "shuffle",
+    3: "fletcher32",
+    4: "szip",
+    5: "nbit",
+    6: "scaleoffset",
+    32000: "lzf",
+}
+_NUMERIC: Final = "biuf"
+
+
+class Walk:
+    """One walk through the groups of a file."""
+
+    def __init__(self, path: Path, *, is_matlab: bool = False) -> None:
+        self.path = path
+        self.is_matlab = is_matlab  #: axes are reversed, and names are joined by dots
+        self.left_out: dict[str, str] = {}
+        self._seen: set[Any] = set()
+
+    def branches(self, root: Any) -> Iterator[Branch]:
+        """Yield every group below and including `root`.
+
+        Raises
+        ------
+        FileFormatError
+            The groups are nested too deep or hold too many objects.
+        """
+        waiting = [("", root, 0)]
+        count = 0
+        while waiting:
+            here, group, depth = waiting.pop(0)
+            if depth > DEPTH:
+                message = f"group {here[:80]!r} is nested in more than {DEPTH} others"
+                raise FileFormatError(message, "export the channels in one group", path=self.path)
+            leaves: list[Leaf] = []
+            records: list[Records] = []
+            scalars: dict[str, object] = dict(self._scalar_attributes(group))
+            for name in group:
+                count += 1
+                if count > OBJECTS:
+                    message = f"the file holds more than {OBJECTS} objects"
+                    raise FileFormatError(message, "export the channels alone", path=self.path)
+                place = self._joined(here, name)
+                item = self._item(group, name, place)
+                if item is None:
+                    continue
+                if not hasattr(item, "dtype"):
+                    if hasattr(item, "keys"):
+                        waiting.append((place, item, depth + 1))
+                    continue
+                self._add(name, place, item, leaves, records, scalars)
+            yield Branch(here, tuple(leaves), tuple(records), facts_of(scalars))
+
+    def _joined(self, here: str, name: str) -> str:
+        separator = "." if self.is_matlab else "/"
+        return f"{here}{separator}{name}" if here else name
+
+    def _item(self, group: Any, name: str, place: str) -> Any | None:
+        """Return what a hard link leads to, each object once."""
+        import h5py
+
+        link = group.get(name, getlink=True)
+        if isinstance(link, h5py.ExternalLink):
+            self.left_out[place] = "is a link into another file, which is not followed"
+            return None
+        if isinstance(link, h5py.SoftLink):
+            self.left_out[place] = f"is a link to {link.path[:80]!r}, which is not followed: name that"
+            return None
+        if self.is_matlab and name.startswith("#"):  # where MATLAB keeps the cells that others refer to
+            return None
+        item = group[name]
+        info = h5py.h5o.get_info(item.id)
+        if (info.fileno, info.addr) in self._seen:
+            return None
+        self._seen.add((info.fileno, info.addr))
+        return item
+
+    def _add(
+        self,
+        name: str,
+        place: str,
+        item: Any,
+        leaves: list[Leaf],
+        records: list[Records],
+        scalars: dict[str, object],
+    ) -> None:
+        shape = tuple(int(side) for side in item.shape) if item.shape is not None else ()
+        kind = item.dtype.kind
+        if self.is_matlab and "MATLAB_class" in item.attrs:
+            matlab = text_attribute(item.attrs, "MATLAB_class")
+            if (
+                matlab in {"char", "cell", "struct", "function_handle"}
+                or "MATLAB_object_decode" in item.attrs
+            ):
+                if matlab not in {"char", "struct"}:
+                    self.left_out[place] = f"is a MATLAB {matlab or 'object'}"
+                return
+        is_table = kind == "V" and item.dtype.names is not None and len(shape) == 1
+        if not is_table and kind not in _NUMERIC:
+            if kind == "c":
+                self.left_out[place] = "holds complex numbers"
+            elif kind == "O" and prod(shape) == 1:
+                value = _text_value(item)
+                if value:
+                    scalars[name] = value
+            return
+        trouble = _trouble(item, shape)
+        if trouble:
+            self.left_out[place] = trouble
+            return
+        if is_table:
+            if shape[0] > 1:
+                names = tuple(_fields(item.dtype))
+                records.append(Records(name, shape[0], names, partial(self._loaded_records, item)))
+            return
+        sides = tuple(side for side in reversed(shape) if side != 1) if self.is_matlab else _squeezed(shape)
+        if not sides:
+            if prod(shape) == 1:
+                scalars[name] = float(self._loaded(item, ()))
+        elif len(sides) > 2:
+            self.left_out[place] = f"has {len(sides)} dimensions"
+        elif prod(sides) > 1:
+            names = next((found for key in NAME_LISTS if (found := _texts(item.attrs, key))), ())
+            units = next((found for key in UNIT_KEYS if (found := _texts(item.attrs, key))), ())
+            unit = units[0] if len(units) == 1 else ""
+            load = partial(self._loaded, item, sides)
+            leaves.append(Leaf(name, sides, load, unit=unit, units=units, names=names))
+
+    def _scalar_attributes(self, group: Any) -> Iterator[tuple[str, object]]:
+        for count, name in enumerate(group.attrs):
+            if count > 1000:
+                return
+            attribute = group.attrs.get_id(name)
+            if prod(attribute.shape) != 1 or attribute.dtype.itemsize > TEXT_BYTES:
+                continue
+            if attribute.dtype.kind in _NUMERIC:
+                yield name, float(np.asarray(group.attrs[name]).reshape(-1)[0])
+            elif text := text_attribute(group.attrs, name):
+                yield name, text
+
+    def _loaded(self, item: Any, sides: tuple[int, ...]) -> Numbers:
+        values = self._values(item)
+        if self.is_matlab:
+            values = values.T
+        values = values.reshape(sides)
+        return values.astype(np.int8) if values.dtype.kind == "b" else values
+
+    def _loaded_records(self, item: Any) -> tuple[Column, ...]:
+        values = self._values(item)
+        units = next((found for key in UNIT_KEYS if (found := _texts(item.attrs, key))), ())
+        names = list(_fields(item.dtype))
+        columns = []
+        for number, (name, (place, inner)) in enumerate(_fields(item.dtype).items()):
+            cells = values[place] if inner is None else values[place][:, inner]
+            unit = units[number] if len(units) == len(names) else ""
+            columns.append(Column(name, unit, np.ascontiguousarray(cells)))
+        return tuple(columns)
+
+    def _values(self, item: Any) -> Numbers:
+        try:
+            return np.asarray(item[()])
+        except (OSError, ValueError, RuntimeError, MemoryError) as error:
+            message = f"data set {item.name!r} cannot be read ({error})"
+            raise FileFormatError(message, "copy the whole file again", path=self.path) from error
+
+
+def _squeezed(shape: tuple[int, ...]) -> tuple[int, ...]:
+    return tuple(side for side in shape if side != 1)
+
+
+def _trouble(item: Any, shape: tuple[int, ...]) -> str:
+    """Return why a data set is not read, before anything of it is."""
+    if item.is_virtual or item.external is not None:
+        return "keeps its values in another file"
+    if prod(shape) > CELLS:
+        return f"declares {'x'.join(map(str, shape))} values, expected at most {CELLS}"
+    if item.dtype.kind == "V" and prod(shape) * max(item.dtype.itemsize // 8, 1) > CELLS:
+        return f"declares {shape[0]} records of {item.dtype.itemsize} bytes, expected at most {CELLS} numbers"
+    properties = item.id.get_create_plist()
+    for number in range(properties.get_nfilters()):
+        code, _, _, label = properties.get_filter(number)
+        if code not in _FILTERS:
+            name = label.decode(errors="replace")[:40] or code
+            return f"is compressed by a filter that is not known here ({name}): export it with gzip"
+    if prod(shape) and item.id.get_storage_size() == 0:
+        return "declares values but holds none"
+    if item.chunks is not None:
+        if prod(item.chunks) * item.dtype.itemsize > CELLS * 8:
+            return "has chunks larger than a log"
+        wanted = prod(-(-side // chunk) for side, chunk in zip(shape, item.chunks, strict=True))
+        written = item.id.get_num_chunks()
+        if written < wanted and not (item.dtype.kind == "f" and np.isnan(item.fillvalue)):
+            return f"was written in part only: {written} of {wanted} chunks"
+    return ""
+
+
+def _fields(kind: Any) -> dict[str, tuple[str, int | None]]:
+    """Return the numeric columns of a record: a field, or an element of a field that is a short vector."""
+    found: dict[str, tuple[str, int | None]] = {}
+    for name in kind.names:
+        field = kind[name]
+        if field.kind in _NUMERIC:
+            found[name] = (name, None)
+        elif field.subdtype is not None and field.base.kind in _NUMERIC and len(field.shape) == 1:
+            found |= {f"{name} {number + 1}": (name, number) for number in range(field.shape[0])}
+    return found
+
+
+def _text_value(item: Any) -> str:
+    """Return the text of a data set of one value."""
+    if item.id.get_storage_size() > TEXT_BYTES or item.external is not None or item.is_virtual:
+        return ""
+    value = np.asarray(item[()]).reshape(-1)[0]
+    return _decoded(value)
+
+
+def text_attribute(attributes: Any, name: str) -> str:
+    """Return an attribute of one text; "" where there is none, or it is none."""
+    found = _texts(attributes, name)
+    return found[0] if len(found) == 1 else ""
+
+
+def _texts(attributes: Any, name: str) -> tuple[str, ...]:
+    """Return an attribute of one or more texts; () where there is none, or it is none."""
+    if name not in attributes:
+        return ()
+    kind = attributes.get_id(name)
+    if prod(kind.shape) > TEXT_BYTES or kind.dtype.kind not in "SOU" or kind.dtype.itemsize > TEXT_BYTES:
+        return ()
+    values = np.asarray(attributes[name]).reshape(-1)
+    texts = tuple(_decoded(value) for value in values)
+    return texts if any(texts) else ()
+
+
+def _decoded(value: object) -> str:
+    if isinstance(value, bytes):
+        value = value.decode("utf-8", errors="replace")
+    return value.strip().strip("\0") if isinstance(value, str) else ""

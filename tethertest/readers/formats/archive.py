@@ -1,0 +1,98 @@
+"""Zip archives of several files: run.toml names the one that is the log."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from tethertest.errors import FileFormatError
+from tethertest.readers.containers.table import listed, toml_text
+from tethertest.readers.containers.zips import ZIP_MAGIC, is_workbook, member_stream, members, opened_zip
+from tethertest.readers.text.document import Head, file_sha256
+from tethertest.records.channel import RawLog
+from tethertest.records.run import Log
+
+NAME = "archive"
+
+
+def sniff(head: Head) -> str | None:
+    """Claim zip archives that do not hold one log alone: these are read without being named."""
+    return "the first bytes are a zip archive's" if head.data.startswith(ZIP_MAGIC) else None
+
+
+def read(path: Path, settings: Log | None = None) -> RawLog:
+    """Read one member of a zip archive.
+
+    Parameters
+    ----------
+    path : Path
+        The archive.
+    settings : Log, optional
+        Its `table` is the member, or ``member/table`` where the member is a container itself.
+
+    Returns
+    -------
+    RawLog
+        As the member's reader returns it, with the archive's path and hash.
+
+    Raises
+    ------
+    FileFormatError
+        No member is named or there is none of that name; the archive is a workbook, damaged, encrypted, in
+        another archive, or unpacks to more than a log may hold.
+    """
+    with path.open("rb") as stream:
+        if stream.read(len(ZIP_MAGIC)) != ZIP_MAGIC:
+            raise _nested(path)
+        archive = opened_zip(stream, path)
+        if is_workbook(archive):
+            message = "found an Excel workbook, expected a log"
+            raise FileFormatError(message, "save the sheet as CSV (UTF-8)", path=path)
+        found = {info.filename: info for info in members(archive)}
+        if len(found) == 1:
+            raise _nested(path)
+        wanted = settings.table if settings is not None else None
+        name = next((name for name in found if wanted == name or (wanted or "").startswith(f"{name}/")), None)
+        if name is None:
+            asked = f", and run.toml says table = {toml_text(wanted)}" if wanted else ""
+            message = f"found a zip archive of {len(found)} files: {listed(found) or 'none is a log'}{asked}"
+            lines = " or ".join(f"table = {toml_text(known)}" for known in list(found)[:4])
+            remedy = f"write for this log in run.toml: {lines}" if lines else "pack the log again"
+            raise FileFormatError(message, remedy, path=path)
+        size = path.stat().st_size
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            member_stream(archive, found[name], path, size) as inner,
+        ):
+            member = Path(folder) / "member"
+            try:
+                member.write_bytes(inner.read())
+            except FileFormatError:
+                raise
+            except Exception as error:  # zipfile and zlib let errors of many kinds through
+                message = f"the compressed file is damaged or cut ({error})"
+                raise FileFormatError(message, "copy it again from the logger", path=path) from error
+            rest = (wanted or "")[len(name) + 1 :]
+            return _member_log(
+                path, name, member, None if settings is None else replace(settings, table=rest or None)
+            )
+
+
+def _member_log(path: Path, name: str, member: Path, settings: Log | None) -> RawLog:
+    from tethertest.readers.registry import read_log  # the member may have any format
+
+    if member.read_bytes()[: len(ZIP_MAGIC)] == ZIP_MAGIC:
+        raise _nested(path)
+    try:
+        log = read_log(member, settings)
+    except FileFormatError as error:
+        place = f"{path}:{name}"
+        raise FileFormatError(error.problem, error.remedy, path=place, line=error.line) from error
+    remarks = (f"{name!r} of the archive is read: {log.reason}", *log.remarks)
+    return replace(log, path=path, sha256=file_sha256(path), remarks=remarks)
+
+
+def _nested(path: Path) -> FileFormatError:
+    message = "found an archive inside another"
+    return FileFormatError(message, "unpack the outer one and name what is in it", path=path)

@@ -1,0 +1,180 @@
+"""A text log as a table whose rows are parsed block by block, several blocks at once."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Generator, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from tethertest.errors import FileFormatError
+from tethertest.readers.channels import unique_names
+from tethertest.readers.text.blocks import Integers, Parsed, RowPlan, parse_block
+from tethertest.readers.text.layout import Layout, find_layout
+from tethertest.readers.text.rows import RowBlock
+from tethertest.readers.text.stamps import time_zone_of
+from tethertest.readers.text.table import SPACES
+from tethertest.readers.text.textlog import Progress, TextBlock, TextLog, open_text
+from tethertest.readers.text.timeaxis import columns_named_time, find_time, read_counter
+from tethertest.readers.text.timescale import TimeScale, settle_scale
+from tethertest.records.run import Log
+
+#: threads that parse; more wait for the one that reads
+_MOST_WORKERS: Final = 4
+_TEXTS: Final = frozenset(["text", "date", "time", "datetime"])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TableLog:
+    """An opened text log: all that its beginning shows, and its rows on request."""
+
+    text: TextLog
+    layout: Layout
+    plan: RowPlan
+    scale: TimeScale
+    channels: tuple[int, ...]  #: their columns
+    expected_rows: int  #: by the size of the file; a compressed one has more
+    remarks_before: tuple[str, ...]  #: on the whole log, before those on single cells
+    remarks_after: tuple[str, ...]
+
+    def blocks(self, progress: Progress | None = None) -> Iterator[RowBlock]:
+        """Yield all rows from the first.
+
+        Raises
+        ------
+        FileFormatError
+            A row is cut or ragged, has no time, or a cell is no number.
+        """
+        places = [self.plan.numbers.index(column) for column in self.channels]
+        row = 0
+        for parsed, lines, encoding in _parsed(self.text, self.layout, self.plan, progress):
+            if len(lines):
+                time = self.scale.seconds(parsed, lines, row)
+                row += len(lines)
+                yield RowBlock(
+                    time,
+                    tuple(parsed.numbers[place] for place in places),
+                    lines,
+                    {key: np.sort(rows) for key, rows in parsed.words.items()},
+                    {column: np.sort(rows) for column, rows in parsed.infinite.items()},
+                    encoding,
+                )
+            if parsed.problem is not None:
+                raise parsed.problem
+
+
+def open_table(path: Path, settings: Log | None) -> TableLog:
+    """Look at the beginning of a text log, and further only where that leaves something open.
+
+    Raises
+    ------
+    FileFormatError
+        The log is empty, has no columns or no time, or can be read in two ways.
+    """
+    text = open_text(path, settings.encoding if settings is not None else None)
+    layout = find_layout(text, settings)
+    names, renamed = unique_names(layout.names)
+    layout = replace(layout, names=names)
+    zone = time_zone_of(settings.time_zone if settings is not None else None, path)
+    chosen = find_time(layout, path, settings)
+    counter = None
+    if chosen.counter is not None:
+        counter = read_counter(layout, chosen.counter, path, settings, zone)
+    channels, unused = _channels(layout, {*chosen.stamps, chosen.counter})
+    if not channels:
+        message = "the log has a time but no channels"
+        remedy = "choose the file that holds the data"
+        raise FileFormatError(message, remedy, path=path, line=layout.header_line)
+    time_only = RowPlan(
+        path, layout.separator, layout.decimal, names,
+        numbers=() if chosen.counter is None else (chosen.counter,),
+        stamps=chosen.stamps,
+        counter=chosen.counter if counter is not None and counter.decimals is not None else None,
+        decimals=counter.decimals or 0 if counter is not None else 0,
+        spare=len(layout.first_cells) > layout.width,
+    )  # fmt: skip
+    numbers = tuple(sorted({*channels, *time_only.numbers}))
+    order = settings.date_order if settings is not None else None
+    beginning = _parsed(text, layout, time_only, None)
+    first, lines = _first_rows(path, beginning)
+    later = ((parsed, its_lines) for parsed, its_lines, _ in beginning if len(its_lines))
+    settled = settle_scale(path, chosen, counter, 0, (first, lines), later, order, zone)
+    beginning.close()
+    no_header = ("the log has no header; its columns are numbered",) if layout.numbered else ()
+    return TableLog(
+        text=text,
+        layout=layout,
+        plan=replace(time_only, numbers=numbers),
+        scale=replace(settled, place=0 if chosen.counter is None else numbers.index(chosen.counter)),
+        channels=channels,
+        expected_rows=_expected_rows(path, layout),
+        remarks_before=(*no_header, *renamed, *settled.remarks),
+        remarks_after=unused,
+    )
+
+
+def _channels(layout: Layout, used: set[int | None]) -> tuple[tuple[int, ...], tuple[str, ...]]:
+    """Return the columns that are channels, and a remark on each that is none and not the time."""
+    blank = {column for column in columns_named_time(layout) if layout.kinds[column] == "blank"}
+    channels, remarks = [], []
+    for column, kind in enumerate(layout.kinds):
+        if column in used:
+            continue
+        if kind in _TEXTS:
+            holds = "text" if kind == "text" else "stamps"
+            remarks.append(f"column {layout.names[column]!r} holds {holds} and is not a channel")
+        elif column in blank:
+            remarks.append(f"column {layout.names[column]!r} begins blank and is not a channel")
+        else:
+            channels.append(column)
+    return tuple(channels), tuple(remarks)
+
+
+def _expected_rows(path: Path, layout: Layout) -> int:
+    """Guess the number of rows from the first one; rows of a log are of much the same length."""
+    length = sum(map(len, layout.first_cells)) + len(layout.first_cells)
+    return path.stat().st_size // length + 1
+
+
+def _first_rows(path: Path, blocks: Iterator[tuple[Parsed, Integers, str]]) -> tuple[Parsed, Integers]:
+    for parsed, lines, _ in blocks:
+        if len(lines):
+            return parsed, lines
+        if parsed.problem is not None:
+            raise parsed.problem
+    message = "the log has a header but no data rows"
+    remedy = "the logger was stopped before its first sample; choose another file"
+    raise FileFormatError(message, remedy, path=path)
+
+
+def _parsed(
+    text: TextLog, layout: Layout, plan: RowPlan, progress: Progress | None
+) -> Generator[tuple[Parsed, Integers, str], None, None]:
+    """Yield the blocks in order, with the lines of their rows in the file and the encoding so far."""
+    workers = min(_MOST_WORKERS, os.cpu_count() or 1)
+    blank = b" \t\r\n" if layout.separator == SPACES else b" \r\n" + layout.separator.encode()
+    blocks = text.blocks(layout.first_line, blank, progress)
+    waiting: deque[tuple[Future[Parsed], str]] = deque()
+    line = layout.first_line
+    with ThreadPoolExecutor(workers) as pool:
+        block: TextBlock | None
+        while (block := next(blocks, None)) is not None or waiting:
+            if block is not None:
+                waiting.append((pool.submit(parse_block, block, plan), block.encoding))
+                if len(waiting) <= workers:
+                    continue
+            future, encoding = waiting.popleft()
+            parsed = future.result()
+            problem = parsed.problem
+            if problem is not None:
+                place = line - 1 + (problem.line or 1)
+                error = FileFormatError(problem.problem, problem.remedy, path=problem.path, line=place)
+                yield replace(parsed, problem=error), parsed.lines + line, encoding
+                return
+            yield parsed, parsed.lines + line, encoding
+            line += parsed.line_count

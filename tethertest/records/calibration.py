@@ -1,0 +1,39 @@
+"""A load cell's calibration: the pairs of output and force behind its newtons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from tethertest.records.quantity import SI
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """How a load cell's output becomes force: pairs of output and force, in a log or written here."""
+
+    log: str | None = None  #: file of ``measured,real`` pairs beside the rig file
+    units: tuple[str, str] | None = None  #: of the log's two columns, where its header names none
+    points: tuple[tuple[str, str], ...] = ()  #: pairs of output and force, text with units
+    order: int | None = None  #: of the polynomial fitted to the pairs; straight lines between them without it
+    #: relative standard uncertainty of all reference forces together (one set of weights, one reference cell)
+    reference: Annotated[float, SI("1", minimum=0.0, maximum=0.1)] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CalibrationPoint:
+    """One pair of a calibration."""
+
+    measured: float  #: output, in the SI unit of `CalibrationData.kind`
+    force: float  #: reference force [N]
+    uncertainty: float | None  #: standard uncertainty of this force alone [N]; None where none is stated
+    place: str  #: where it is written, e.g. "line 4"
+
+
+@dataclass(frozen=True, slots=True)
+class CalibrationData:
+    """The pairs of one load cell, in the order in which they were taken."""
+
+    kind: str  #: "ratio", "voltage" or "count": what the output is
+    points: tuple[CalibrationPoint, ...]
+    source: str  #: file and the start of its SHA-256, or "rig file"

@@ -1,0 +1,271 @@
+"""Crash safety of the run store: a real ingest is killed at random instants and starved of disk.
+
+``python -m tethertest.studies.crash_safety 200 -o FILE``: half of the instants are random times over the
+whole life of the process, half are random steps of the writing phase, before, in the middle of or after a
+write, a synchronisation or the rename. After each, the store must be the old one or the new one to the byte,
+and raw logs as they were. Then file-size limits from nothing to just enough, each of which must end in a
+plain message.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tethertest.store import load_store
+from tethertest.store.whole import WholeFile
+
+#: this module, also where it is run as a program
+_MODULE = "tethertest.studies.crash_safety"
+#: a limit below the store's size must be refused; so many are tried
+LIMITS = 50
+#: where the instants come from
+SEED = 20
+#: after so many kills the next ingest is let end, to see that it takes left-overs away
+_CLEANED = 5
+_BAD_INPUT = 2
+#: faults that the table names
+_FAULTS_SHOWN = 10
+
+
+@dataclass(slots=True)
+class Tally:
+    """What was seen."""
+
+    outcomes: Counter[tuple[str, str]] = field(default_factory=Counter)  #: (phase, outcome) -> how often
+    faults: list[str] = field(default_factory=list)
+    steps: int = 0  #: of the writing phase of one ingest
+
+
+class Battery:
+    """A run, its old and its new store, and what ingest must keep."""
+
+    def __init__(self, run: Path, rigs: Path, scratch: Path) -> None:
+        self.rigs = rigs
+        self.scratch = scratch
+        self.store = scratch / "stores" / "run.h5"
+        self.store.parent.mkdir()
+        self.run = scratch / "run"
+        shutil.copytree(run, self.run)
+        self.raw = self._raw()
+        self.new = self._reference("new")
+        older = self.run / "run.toml"
+        text = older.read_text(encoding="utf-8")
+        older.write_text(f"# the run file as it was before\n{text}", encoding="utf-8")
+        self.old = self._reference("old")
+        older.write_text(text, encoding="utf-8")
+
+    def _raw(self) -> dict[str, str]:
+        return {
+            path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(self.run.iterdir())
+        }
+
+    def _reference(self, name: str) -> bytes:
+        made = self.scratch / f"{name}.h5"
+        start = time.perf_counter()
+        self.command(made).check_returncode()
+        self.life = time.perf_counter() - start  #: of the latest undisturbed ingest [s]
+        return made.read_bytes()
+
+    def command(self, store: Path, **settings: Any) -> subprocess.CompletedProcess[str]:
+        """Run one ingest to its end."""
+        return subprocess.run(self.words(store), capture_output=True, text=True, check=False, **settings)
+
+    def words(self, store: Path, step: int | None = None) -> list[str]:
+        """Return the command line of an ingest, which kills itself at a step if it is told one."""
+        ingest = ["ingest", str(self.run), "--rigs", str(self.rigs), "-o", str(store)]
+        module = ["-m", "tethertest.cli"] if step is None else ["-m", _MODULE, "--die-at", str(step)]
+        return [sys.executable, *module, *ingest]
+
+    def put_old(self) -> None:
+        """Put the old store where the new one goes."""
+        self.store.write_bytes(self.old)
+
+    def left(self) -> list[str]:
+        """Return what is in the folder beside the store."""
+        return sorted(path.name for path in self.store.parent.iterdir() if path != self.store)
+
+    def state(self) -> str:
+        """Return which store stands there, after reading it."""
+        content = self.store.read_bytes() if self.store.exists() else b""
+        if content not in (self.old, self.new):
+            return "neither"
+        load_store(self.store)
+        return "old" if content == self.old else "new"
+
+    def look(self, tally: Tally, phase: str, where: str) -> None:
+        """Note what a kill left."""
+        state = self.state()
+        tally.outcomes[phase, state] += 1
+        tally.outcomes[phase, "left-over"] += bool(self.left())
+        if state == "neither":
+            tally.faults.append(f"{where}: the store is neither the old nor the new one")
+        if self._raw() != self.raw:
+            tally.faults.append(f"{where}: raw files changed")
+
+    def clean(self, tally: Tally, where: str) -> None:
+        """Let the next ingest end, and see that it took the left-overs away."""
+        ended = self.command(self.store)
+        if ended.returncode or self.left() or self.state() != "new":
+            tally.faults.append(f"{where}: the next ingest left {self.left()}, exit {ended.returncode}")
+
+
+def kill_at_random(battery: Battery, instants: int, chance: random.Random, tally: Tally) -> None:
+    """Kill ingests: at random times, and at random steps of the writing phase, by turns."""
+    battery.put_old()
+    counted = subprocess.run(
+        battery.words(battery.store, sys.maxsize), capture_output=True, text=True, check=True
+    )
+    tally.steps = int(counted.stderr.rsplit(maxsplit=1)[-1])
+    for instant in range(instants):
+        battery.put_old()
+        if instant % 2:
+            step = chance.randrange(tally.steps)
+            done = subprocess.run(battery.words(battery.store, step), capture_output=True, check=False)
+            if done.returncode != -signal.SIGKILL:
+                tally.faults.append(f"step {step}: exit {done.returncode}, expected a kill")
+            battery.look(tally, "step of the writing phase", f"step {step}")
+        else:
+            delay = chance.uniform(0.0, 1.1 * battery.life)
+            process = subprocess.Popen(
+                battery.words(battery.store), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            )
+            time.sleep(delay)
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            battery.look(tally, "time in the process's life", f"{delay:.3f} s")
+        if len(battery.left()) > 1:
+            tally.faults.append(f"instant {instant}: left-overs pile up")
+        if instant % _CLEANED == _CLEANED - 1 or instant == instants - 1:
+            battery.clean(tally, f"instant {instant}")
+
+
+def starve(battery: Battery, limits: int, tally: Tally) -> None:
+    """Ingest under file-size limits: every one below the store's size is refused in plain words."""
+    size = len(battery.new)
+    for number in range(limits):
+        limit = size * number // limits if number + 1 < limits else size - 1
+        battery.put_old()
+        ended = battery.command(battery.store, preexec_fn=_limited(limit))
+        plain = ended.returncode == _BAD_INPUT and "fix:" in ended.stderr and "Traceback" not in ended.stderr
+        tally.outcomes["file-size limit", "plain message"] += plain
+        tally.outcomes["file-size limit", battery.state()] += 1
+        tally.outcomes["file-size limit", "left-over"] += bool(battery.left())
+        if not plain or battery.state() != "old" or battery.left():
+            tally.faults.append(f"limit {limit}: exit {ended.returncode}, {ended.stderr[-200:]!r}")
+
+
+def _limited(limit: int) -> Callable[[], None]:
+    def apply() -> None:
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    return apply
+
+
+def table(tally: Tally, run: str) -> str:
+    """Return the tally as Markdown."""
+    columns = ("old", "new", "neither", "left-over", "plain message")
+    phases = dict.fromkeys(phase for phase, _ in tally.outcomes)
+    lines = [
+        "# Crash safety of the run store",
+        "",
+        f"`python -m tethertest.studies.crash_safety`, run {run}, seed {SEED}. An ingest writes in "
+        f"{tally.steps} steps. *Left-over*: temporary files at that instant; after a kill the next ingest "
+        "takes them away.",
+        "",
+        f"| ended by | times | {' | '.join(columns)} |",
+        f"|{'---|' * (len(columns) + 2)}",
+    ]
+    for phase in phases:
+        counts = [tally.outcomes[phase, column] for column in columns]
+        lines.append(f"| {phase} | {sum(counts[:3])} | {' | '.join(map(str, counts))} |")
+    faults = tally.faults[:_FAULTS_SHOWN] or ["none"]
+    return "\n".join([*lines, "", "Faults: " + "; ".join(faults), ""])
+
+
+def run_battery(run: Path, rigs: Path, instants: int, limits: int) -> Tally:
+    """Run the whole battery on a copy of a run folder."""
+    tally = Tally()
+    with tempfile.TemporaryDirectory() as scratch:
+        battery = Battery(run, rigs, Path(scratch))
+        kill_at_random(battery, instants, random.Random(SEED), tally)
+        starve(battery, limits, tally)
+    return tally
+
+
+def _die_at(step: int, arguments: list[str]) -> None:
+    """Run the command line and kill the process at a step of the writing phase; say how many there were."""
+    import runpy
+
+    taken = 0
+
+    def count() -> None:
+        nonlocal taken
+        if taken == step:
+            os.kill(os.getpid(), signal.SIGKILL)
+        taken += 1
+
+    write, sync, rename = WholeFile.write, os.fsync, Path.replace
+
+    def counted_write(self: WholeFile, data: Any) -> int:
+        half = memoryview(data).cast("B")[: memoryview(data).nbytes // 2]
+        count()
+        if taken == step:  # the kill comes with half of the data in the file
+            write(self, half)
+        count()
+        return write(self, data)
+
+    def counted_sync(descriptor: int) -> None:
+        count()
+        sync(descriptor)
+        count()
+
+    def counted_rename(self: Path, target: Any) -> Path:
+        count()
+        renamed = rename(self, target)
+        count()
+        return renamed
+
+    WholeFile.write, os.fsync, Path.replace = counted_write, counted_sync, counted_rename  # type: ignore[method-assign,assignment]
+    sys.argv = ["tethertest", *arguments]
+    try:
+        runpy.run_module("tethertest.cli", run_name="__main__", alter_sys=True)
+    finally:
+        sys.stderr.write(f"steps {taken}\n")
+
+
+def main(arguments: list[str]) -> int:
+    """Run the battery, print and write its table, and return the exit code: 1 where anything was at fault."""
+    if arguments[:1] == ["--die-at"]:
+        _die_at(int(arguments[1]), arguments[2:])
+    parser = argparse.ArgumentParser(prog=f"python -m {_MODULE}")
+    parser.add_argument("instants", nargs="?", type=int, default=200)
+    parser.add_argument("-o", "--output", type=Path)
+    parser.add_argument("--run", type=Path, default=Path("datasets/rig3m/run05"))
+    parser.add_argument("--rigs", type=Path, default=Path("rigs"))
+    asked = parser.parse_args(arguments)
+    tally = run_battery(asked.run, asked.rigs.resolve(), asked.instants, LIMITS)
+    text = table(tally, asked.run.name)
+    sys.stdout.write(text)
+    if asked.output is not None:
+        asked.output.write_text(text, encoding="utf-8")
+    return 1 if tally.faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

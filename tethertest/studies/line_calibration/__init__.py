@@ -1,0 +1,1 @@
+"""How often the line search is wrong, on records with known content: false alarms, power, bias, coverage."""

@@ -26,9 +26,10 @@ verify: setup  ## every run of the campaign against its truth, and the long batt
 	$(BIN)/python datasets/check_rig3m.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tethertest.studies.coverage 300 reports/error-coverage.md
 
-bench: setup  ## speed against error, stability, timings of whole processes
+bench: setup  ## speed against error, stability, timings of whole processes and of reading
 	$(BIN)/tethertest bench --stability
 	$(BIN)/python tests/benchmarks/whole_processes.py
+	$(BIN)/python tests/benchmarks/reading.py
 
 lint: setup  ## style, types, layers
 	$(BIN)/ruff format --check

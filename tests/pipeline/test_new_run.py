@@ -43,7 +43,7 @@ def filled(path, **values):
         ("run04", "2026-09-05T10:29:59"),
         ("run09", "2026-09-07T09:14:59+08:00"),
     ],
-)  # fmt: skip
+)
 def test_what_the_logs_tell_is_filled_in(tmp_path, run, date):
     folder = folder_of(tmp_path, run)
     path, _ = new_run(folder, rigs=RIGS)

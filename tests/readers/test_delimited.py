@@ -348,3 +348,13 @@ def test_a_word_that_is_none_is_found_among_many_that_are(write):
     with pytest.raises(FileFormatError, match="found 'loose' in column 'F'") as caught:
         read_log(write("time [s],F\n" + rows))
     assert caught.value.line == 1502
+
+
+def test_rows_of_separators_behind_the_data(write):
+    log = read_log(write("time;F [N]\n" + "".join(f"{k};{k},5\n" for k in range(40)) + ";\n" * 3000))
+    assert only(log).values.tolist() == [k + 0.5 for k in range(40)]
+
+
+def test_quoted_stamps_with_blanks(write):
+    log = read_log(write('time,F\n" 2026-09-05 14:20:00 ",1\n"2026-09-05 14:20:01",2\n'))
+    assert only(log).time.tolist() == [0.0, 1.0]

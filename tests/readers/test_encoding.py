@@ -5,6 +5,7 @@ import pytest
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
 from tethertest.readers.text.encoding import detect_encoding
+from tethertest.readers.text.encoding_scan import encoding_of_blocks
 
 CHINESE = "时间(s),拉力(千牛),应变(微应变)\n"
 
@@ -69,3 +70,33 @@ def test_a_codec_that_is_not_for_text_is_refused(write, settings):
     path = write("time [s];heave [mm]\n0;1\n1;2\n")
     with pytest.raises(FileFormatError, match="idna"):
         read_log(path, settings(encoding="idna"))
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 5, 8, 100])
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("time,F\n0,1\n", "ascii"), ("Längenänderung [µm]\n", "utf-8"), ("°C: ÀÁ\n", "cp1252"),
+        ("Größe [mm], créé à Évreux\n", "cp1252"), (CHINESE, "utf-8"), (CHINESE, "gb18030"),
+        ("°C ÀÁ 20 °", "cp1252"), ("温度(℃)\t拉力", "gb18030"),
+    ],
+)  # fmt: skip
+def test_an_encoding_that_shows_late_is_that_of_the_whole_text(text, written, size):
+    data = b"0,1\n" * 5 + text.encode(written)
+    blocks = [data[begin : begin + size] for begin in range(0, len(data), size)]
+    assert encoding_of_blocks(blocks) == detect_encoding(data) == written
+
+
+@pytest.mark.parametrize(("encoding", "lost"), [("utf-8", 1), ("utf-16-le", 1), ("gb18030", 1)])
+def test_a_log_that_is_cut_inside_a_character_is_refused(write, encoding, lost):
+    data = (CHINESE + "0.0,5.25,-12.5\n0.1,5.50,-13.5\n" * 6000 + "# 拉").encode(encoding)
+    with pytest.raises(FileFormatError, match="does not belong to the encoding") as caught:
+        read_log(write(data[:-lost]))
+    assert caught.value.line == 12002
+
+
+def test_a_byte_of_another_encoding_far_down_names_its_line(write):
+    data = CHINESE.encode() + b"0.0,5.25,-12.5\n" * 9000 + b"# 20 \xb0C\n" + b"0.0,5.25,-12.5\n"
+    with pytest.raises(FileFormatError, match="byte 0xb0 does not belong to the encoding utf-8") as caught:
+        read_log(write(data))
+    assert caught.value.line == 9002

@@ -172,3 +172,21 @@ def test_the_run_file_gives_units_and_zone(write, settings):
     )
     assert log.channels[0].unit == "uV/V"
     assert log.start.utcoffset() == dt.timedelta(hours=8)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words", "line"),
+    [
+        ("Samples\t4\t4", "Samples\t3\t3", "states 3 samples and has 4 rows", 25),
+        ("Channels\t2", "Channels\t3", "states 3 channels and has names for 2", 21),
+        ("5.250000", "5.2\r50000", "a carriage return inside a row", 23),
+    ],
+)
+def test_rows_that_contradict_the_header_are_refused(tmp_path, old, new, words, line):
+    text = file_header() + segment()
+    assert old in text
+    path = tmp_path / "log.lvm"
+    path.write_bytes(text.replace(old, new).encode())
+    with pytest.raises(FileFormatError, match=words) as caught:
+        read_log(path)
+    assert caught.value.line == line

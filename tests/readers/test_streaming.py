@@ -99,7 +99,7 @@ def case(request, write, settings):
     return write(text, **how), settings(**keys)
 
 
-@pytest.mark.parametrize("size", [4, 5, 6, 8, 13, 21, 34, 55])
+@pytest.mark.parametrize("size", [4, 7, 20, 55])
 def test_blocks_may_end_anywhere(case, monkeypatch, size):
     whole = read_log(*case)
     monkeypatch.setattr(textlog, "BLOCK_BYTES", size)
@@ -114,8 +114,8 @@ def test_pieces_may_end_at_any_row(case):
         assert all(piece.channels[0].values.size == rows for piece in pieces[:-1])
 
 
-@pytest.mark.parametrize("size", [4, 7, 30])
-@pytest.mark.parametrize("rows", [1, 2, 5])
+@pytest.mark.parametrize("size", [4, 30])
+@pytest.mark.parametrize("rows", [1, 3])
 def test_pieces_and_blocks_may_end_apart(case, monkeypatch, size, rows):
     log = read_log(*case)
     monkeypatch.setattr(textlog, "BLOCK_BYTES", size)

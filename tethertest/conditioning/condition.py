@@ -92,11 +92,11 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
         findings += problems
         channels += [mapped(channel, fit) for channel in by_clock[name]]
     windows = windows_of(run, channels, guide.drive_frequency)
-    done, found = finished(channels, run.rig, guide, windows)
+    done, found = finished(with_steps_flagged(channels), run.rig, guide, windows)
     findings += (*windows.findings, *found)
     at_rest = [item for item in (windows.rest_before, windows.rest_after) if item is not None]
     result: list[Channel] = []
-    for channel in with_steps_flagged(done):
+    for channel in done:
         sensor = sensor_of(run.rig, channel)
         flagged = with_range_flagged(channel, sensor)
         if flagged.kind == "tension":

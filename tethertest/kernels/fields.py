@@ -311,6 +311,11 @@ def scan_rows(
                 elif kind == STAMP:
                     inner = start + 1 if quoted else start
                     size = (stop - 1 if quoted else stop) - inner
+                    while quoted and size > 0 and text[inner] == 32:
+                        inner += 1
+                        size -= 1
+                    while quoted and size > 0 and text[inner + size - 1] == 32:
+                        size -= 1
                     plain = size <= longest and (not quoted or text[stop - 1] == 34)
                     for k in range(longest):
                         stamps[place, rows, k] = text[inner + k] if plain and k < size else 0

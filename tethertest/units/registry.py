@@ -64,7 +64,14 @@ _WHOLE = {
     "kip": "1000 force_pound",
     "kips": "1000 force_pound",
     "in": "inch",
-}
+    # as Chinese acquisition systems write them
+    "牛": "newton", "牛顿": "newton", "千牛": "kilonewton", "毫牛": "millinewton",
+    "微应变": "microstrain_", "应变": "dimensionless",
+    "米": "meter", "厘米": "centimeter", "毫米": "millimeter", "微米": "micrometer", "纳米": "nanometer",
+    "米/秒": "meter / second", "毫米/秒": "millimeter / second",
+    "米/秒²": "meter / second ** 2", "米/秒^2": "meter / second ** 2",
+    "摄氏度": "degC", "伏": "volt", "伏特": "volt", "毫伏": "millivolt", "赫兹": "hertz", "秒": "second",
+}  # fmt: skip
 
 _POWER = re.compile(r"(?<=[A-Za-z])([2-4])(?![A-Za-z0-9])")
 

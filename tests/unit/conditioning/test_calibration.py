@@ -71,12 +71,26 @@ def test_intervals_of_the_scale_cover_the_truth_in_95_percent(order, spread):
     assert 0.015 < outside / 600 < 0.075
 
 
+def test_four_pairs_know_their_own_scatter_badly_and_the_interval_says_so():
+    random = np.random.default_rng(8)
+    outside = 0
+    for _ in range(600):
+        force = [*LOADS[::2].tolist(), 100.0]
+        noisy = np.array(force) + random.normal(0.0, 0.1, 4)
+        curve = curve_of(data(2e-5 * np.array(force), noisy), LINE)
+        span = np.diff(curve.force(np.array([0.0, 2e-3])))[0]
+        outside += abs(span / 100.0 - 1.0) > 1.96 * curve.relative
+    assert 0.03 < outside / 600 < 0.07  # 19 % without Student's t
+
+
 def test_hysteresis_and_repeatability_are_what_was_put_in():
     way = np.concatenate((LOADS, LOADS[-2::-1]))
     loop = np.where(np.arange(way.size) < LOADS.size, 0.0, 0.4 * np.sin(np.pi * way / 100.0))
     curve = curve_of(data(2e-5 * way, way + loop), LINE)
     assert curve.hysteresis == pytest.approx(np.max(loop), rel=1e-2)
-    assert curve.offset_uncertainty > np.max(loop) / np.sqrt(12.0)
+    # a rectangle of half-width h/2 has the standard deviation h/sqrt(12)
+    beyond = np.sqrt(curve.offset_uncertainty**2 - curve.scatter**2)
+    assert beyond == pytest.approx(np.max(loop) / np.sqrt(12.0), rel=1e-2)
     random = np.random.default_rng(3)
     many = np.tile(LOADS, 60)
     spread = curve_of(data(2e-5 * (many + random.normal(0, 0.2, many.size)), many), LINE)

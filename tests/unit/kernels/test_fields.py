@@ -139,7 +139,7 @@ def test_behind_the_last_column_nothing_may_stand(run: Run) -> None:
 
 
 def test_stamps_are_copied_without_blanks_and_quotes(run: Run) -> None:
-    text = '1, 2026-09-05 14:20 \n2,"14:20:00"\n3,\n4,' + "9" * 25 + "\n"
+    text = '1, 2026-09-05 14:20 \n2," 14:20:00  "\n3,\n4,' + "9" * 25 + "\n"
     found = scan(run, text, kinds=[0, 1])
     assert found["stamps"] == [["2026-09-05 14:20", "14:20:00", "", ""]]
     assert found["odd"] == [(3, 1, "9" * 25)]

@@ -161,7 +161,7 @@ def _read_segment(
     rows = find_rows(path, segment.rows, segment.first_line, separator, decimal)
     check_widths(rows, width - 1 if segment.comment else width, width)
     stated = max(segment.samples)
-    if segment.counts_rows and len(rows.lines) < stated:
+    if segment.counts_rows and len(rows.lines) != stated:
         message = f"the segment states {stated} samples and has {len(rows.lines)} rows"
         remedy = "copy the whole file from the logger again"
         raise FileFormatError(message, remedy, path=path, line=int(rows.lines[-1]))

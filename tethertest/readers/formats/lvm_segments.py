@@ -105,6 +105,11 @@ def _segment(
     step = 2 if x_columns == "multi" else 1
     names = column_names[1::step]
     count = len(names)
+    stated = keys.get("Channels", [""])[0]
+    if stated.isdecimal() and int(stated) != count:
+        message = f"the segment states {stated} channels and has names for {count}"
+        remedy = "copy the whole file from the logger again"
+        raise FileFormatError(message, remedy, path=document.path, line=names_line)
     numbers = {
         key: _numbers(document, keys.get(key, []), count, step, names_line)
         for key in ("X0", "Delta_X", "Samples")

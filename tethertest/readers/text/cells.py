@@ -26,7 +26,8 @@ _UNITS: Final = frozenset([
     "m/s", "m/s2", "m/s^2", "m/s²", "gn", "ue", "µe", "με", "µε", "µm/m", "μm/m",
     "um/m", "ustrain", "microstrain", "strain", "m/m", "count", "counts", "nm/n", "a", "ma", "w",
     "j", "nms", "lb", "lbf", "kip", "in", "ft", "hh:mm:ss", "秒", "毫秒", "分",
-    "牛", "千牛", "牛顿", "毫米", "厘米", "米", "微应变", "摄氏度", "伏", "毫伏", "赫兹",
+    "牛", "千牛", "牛顿", "毫牛", "毫米", "厘米", "米", "微米", "纳米", "微应变", "应变", "摄氏度",
+    "伏", "毫伏", "伏特", "赫兹", "米/秒", "毫米/秒", "米/秒²", "米/秒^2",
 ])  # fmt: skip
 
 
@@ -36,9 +37,8 @@ def split_row(line: str, separator: str) -> list[str]:
         return line.split()
     if '"' in line:
         with suppress(csv.Error):
-            return [
-                cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True))
-            ]
+            cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+            return [cell.strip() for cell in cells]
     return [cell.strip() for cell in line.split(separator)]
 
 

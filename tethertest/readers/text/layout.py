@@ -27,6 +27,8 @@ _SPELLINGS: Final = {
 }  # fmt: skip
 _COMMENT: Final = ("#", "%", "//")
 _SAMPLE_LINES: Final = 600
+#: characters of rows that say nothing: spreadsheets write them by the thousand behind the data
+_EMPTY: Final = " \t\r\n;,|"
 #: a line that spreadsheets write and read
 _DIRECTIVE = re.compile(r"\s*sep=(.)\s*", re.IGNORECASE)
 #: a group of three digits after a comma: a decimal part or a thousand
@@ -93,7 +95,7 @@ def find_layout(source: TextSource, settings: Log | None) -> Layout:
     plain: list[tuple[int, str]] = []
     comments: list[tuple[int, str]] = []
     for number, text in enumerate(source.lines(skip + _SAMPLE_LINES), start=1):
-        if number <= skip or not text.strip():
+        if number <= skip or not text.strip(_EMPTY):
             continue
         if text.lstrip().startswith(_COMMENT):
             comments.append((number, text.lstrip().lstrip("#%/").strip()))

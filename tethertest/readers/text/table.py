@@ -200,6 +200,11 @@ def read_columns(
     """
     import pandas as pd
 
+    stray = rows.body.find(b"\r")
+    if stray >= 0:  # pandas would begin a row there
+        message = "found a carriage return inside a row"
+        line = int(rows.lines[rows.body.count(b"\n", 0, stray)])
+        raise FileFormatError(message, "copy the log again, as binary", path=rows.path, line=line)
     present = min(width, int(rows.counts.max()))
     wanted = [column for column in range(present) if column not in unused]
     numeric = [column for column in wanted if column not in texts]

@@ -177,10 +177,7 @@ class _Utf8:
         if self._decoder is None and not text.isascii():
             self._settle(filled, len(carry))
         if self._decoder is not None:
-            decoded = self._decoded(bytes(text[len(carry) :]))
-            if size < BLOCK_BYTES and size:
-                decoded += self._decoded(b"", size)
-            text = carry + decoded
+            text = carry + self._decoded(bytes(text[len(carry) :]))
         if self._offset == 0 and text.startswith(_MARK):
             text = text[len(_MARK) :]
         nul = text.find(b"\0", len(carry))
@@ -213,13 +210,13 @@ class _Utf8:
                 self.encoding = encoding_of_blocks(iter(lambda: stream.read(BLOCK_BYTES), b""))
         self._decoder = codecs.getincrementaldecoder(self.encoding)()
 
-    def _decoded(self, data: bytes, ahead: int = 0) -> bytes:
+    def _decoded(self, data: bytes) -> bytes:
         assert self._decoder is not None
         pending = len(self._decoder.getstate()[0])
         try:
             return self._decoder.decode(data, final=not data).encode()
         except UnicodeDecodeError as error:
-            place = self._offset + ahead - pending + error.start
+            place = self._offset - pending + error.start
             byte = error.object[error.start]
             message = f"byte 0x{byte:02x} does not belong to the encoding {self.encoding}"
             remedy = "set encoding in run.toml to the one the logger used"

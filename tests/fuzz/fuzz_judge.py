@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 import time
 from collections import Counter
@@ -162,7 +163,7 @@ def _catman(log: RawLog, lines: list[str]) -> list[str]:
 
 
 def _toa5(log: RawLog, lines: list[str]) -> list[str]:
-    names = {cell.strip('" ') for cell in lines[1].split(",")}
+    names = {cell.strip() for cell in next(csv.reader([lines[1]]))}
     return [
         f"{channel.name!r} is not in the row of names"
         for channel in log.channels

@@ -15,6 +15,7 @@ from typing import Final
 
 import h5py
 import numpy as np
+import scipy.io
 from nptdms import ChannelObject, TdmsWriter
 
 from tethertest.records.run import Log
@@ -40,7 +41,7 @@ class Seed:
 
     @property
     def is_text(self) -> bool:
-        return self.reader not in {"tdms", "hdf5", "archive"}
+        return self.reader not in {"tdms", "hdf5", "matlab", "archive"}
 
 
 def forces() -> np.ndarray:
@@ -195,6 +196,27 @@ def hdf5() -> Seed:
     return Seed("hdf5", "vectors", buffer.getvalue(), NAMES, forces())
 
 
+def matlab(*, do_compression: bool) -> Seed:
+    buffer = io.BytesIO()
+    columns = dict(zip(NAMES, forces().T, strict=True))
+    units = dict.fromkeys(NAMES, "N")
+    daq = {"time": np.arange(ROWS) * STEP, **columns, "units": units}
+    scipy.io.savemat(buffer, {"daq": daq}, do_compression=do_compression)
+    kind = "7, compressed" if do_compression else "5"
+    return Seed("matlab", f"version {kind}", buffer.getvalue(), NAMES, forces())
+
+
+def matlab_73() -> Seed:
+    buffer = io.BytesIO()
+    with h5py.File(buffer, "w", userblock_size=512) as file:
+        for name, column in zip(("time", *NAMES), (np.arange(ROWS) * STEP, *forces().T), strict=True):
+            file[f"daq/{name}"] = column[None]
+            file[f"daq/{name}"].attrs["MATLAB_class"] = np.bytes_("double")
+        file["daq"].attrs["MATLAB_class"] = np.bytes_("struct")
+    head = b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM"
+    return Seed("matlab", "version 7.3", head + buffer.getvalue()[128:], NAMES, forces())
+
+
 def archive() -> Seed:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as file:
@@ -216,6 +238,7 @@ def seeds() -> dict[str, tuple[Seed, ...]]:
         "fbgs": (fbgs(),),
         "toa5": (toa5(),),
         "hdf5": (hdf5(),),
+        "matlab": (matlab(do_compression=False), matlab(do_compression=True), matlab_73()),
         "json": (json_rows(),),
         "archive": (archive(),),
         "delimited": (delimited(",", "."), delimited(";", ","), delimited("\t", ".")),

@@ -91,3 +91,7 @@ def test_what_is_damaged_or_hostile_is_refused(write, text, words):
 def test_infinity_and_numbers_beyond_float_are_missing_and_told(write):
     log = read_log(write('{"t": [0, 1, 2, 3], "F": [1, Infinity, NaN, ' + "9" * 5000 + "]}"))
     assert "column 'F': 2 infinite values read as missing" in log.remarks
+
+
+def test_the_encoding_is_told(write):
+    assert read_log(write(json.dumps(ROWS), encoding="utf-16")).encoding == "utf-16"

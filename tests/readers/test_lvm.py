@@ -190,3 +190,48 @@ def test_rows_that_contradict_the_header_are_refused(tmp_path, old, new, words, 
     with pytest.raises(FileFormatError, match=words) as caught:
         read_log(path)
     assert caught.value.line == line
+
+
+def test_a_channel_with_more_values_than_it_states(write):
+    text = (file_header() + segment()).replace("Samples\t4\t4", "Samples\t4\t2")
+    with pytest.raises(FileFormatError, match="'F_bottom' has values in 4 rows, the segment states 2"):
+        read_log(write(text))
+
+
+@pytest.mark.parametrize("x_columns", ["One", "Multi"])
+def test_an_even_x_column_that_contradicts_the_sampling_interval(write, x_columns):
+    text = (file_header(x_columns) + segment(x_columns)).replace("Delta_X\t0.25", "Delta_X\t0.26")
+    with pytest.raises(FileFormatError, match=r"Delta_X is 0.26 for 'F_top', its X column steps by 0.25"):
+        read_log(write(text))
+
+
+def test_an_uneven_x_column_is_the_time_whatever_the_sampling_interval(write):
+    text = (file_header("One") + segment("One")).replace("0.500000\t", "0.450000\t")
+    text = text.replace("Delta_X\t0.25\t0.25", "Delta_X\t1\t1")
+    assert read_log(write(text)).channels[0].time.tolist() == [0.0, 0.25, 0.45, 0.75]
+
+
+@pytest.mark.parametrize("step", ["0", "-0.25"])
+def test_samples_without_any_time(write, step):
+    text = (file_header() + segment()).replace("Delta_X\t0.25\t0.25", f"Delta_X\t{step}\t{step}")
+    with pytest.raises(FileFormatError, match="there is no X column: the samples have no time"):
+        read_log(write(text))
+
+
+@pytest.mark.parametrize("x", ["1e308", ""])
+def test_an_x_value_that_is_no_time(write, x):
+    text = (file_header("One") + segment("One")).replace("\n0.500000\t", f"\n{x}\t")
+    with pytest.raises(FileFormatError, match="no X value that is a time") as caught:
+        read_log(write(text))
+    assert caught.value.line == 24
+
+
+def test_a_header_key_that_is_cut_before_its_value(write):
+    text = (file_header() + segment()).replace("Writer_Version\t2", "Writer_Version")
+    assert read_log(write(text)).channels[0].values.tolist() == TOP.tolist()
+
+
+def test_numbers_of_the_header_that_are_none(write):
+    text = (file_header() + segment()).replace("Samples\t4", "Samples\tnan")
+    with pytest.raises(FileFormatError, match="found 'nan' in the header of a segment"):
+        read_log(write(text))

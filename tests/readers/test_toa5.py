@@ -83,6 +83,10 @@ def test_a_table_that_a_spreadsheet_has_saved(write, settings):
     log = read_log(path, settings(date_order="mdy"))
     assert log.reason == "the second row begins with 'TIMESTAMP' and the third with 'TS', as in TOA5"
     assert [channel.name for channel in log.channels] == ["Range1", "F"]
+    assert [channel.unit for channel in log.channels] == [
+        "",
+        "kN",
+    ]  # RN marks a record's number, no ronnanewton
     assert log.channels[1].time.tolist() == [0.0, 3600.0, 7200.0]
     assert any("the first cell is 'HEADER', not 'TOA5'" in remark for remark in log.remarks)
 
@@ -130,3 +134,22 @@ def test_the_settings_give_zone_and_units(write, settings):
     log = read_log(write(TEXT), settings(time_zone="+08:00", units={"F_top": "kN"}))
     assert log.channels[0].unit == "kN"
     assert log.start.utcoffset() == dt.timedelta(hours=8)
+
+
+def test_the_unit_of_stamps_over_numbers(write):
+    text = TEXT.replace('"TS","RN","N"', '"N","RN","TS"')
+    with pytest.raises(FileFormatError, match=r"'F_top' has the unit TS, .* '12\.5'") as caught:
+        read_log(write(text))
+    assert caught.value.line == 5
+
+
+def test_a_name_outside_its_quotes(write):
+    with pytest.raises(FileFormatError, match="expected a name in quotes") as caught:
+        read_log(write(TEXT.replace('"F_top"', '\t"F_top"')))
+    assert caught.value.line == 2
+
+
+def test_a_row_of_the_header_that_a_carriage_return_splits(write):
+    with pytest.raises(FileFormatError, match="the row of environment has a stray carriage return") as caught:
+        read_log(write(TEXT.replace('"TOA5","rig"', '"TOA5",\r"rig"')))
+    assert caught.value.line == 1

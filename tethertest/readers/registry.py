@@ -18,6 +18,7 @@ from tethertest.readers.formats import (
     hdf5,
     json_log,
     lvm,
+    matlab,
     tdms,
     toa5,
 )
@@ -52,6 +53,7 @@ READERS: Final[tuple[Reader, ...]] = (
     fbgs,
     toa5,
     hdf5,
+    matlab,
     json_log,
     archive,
     delimited,
@@ -63,13 +65,13 @@ _MAPPED: Final = {
     "hdf5": {"table", "columns", "time", "rate"},
     "delimited": {"columns", "time", "rate"},
     "json": {"table", "columns", "time", "rate"},
+    "matlab": {"table", "columns", "time", "rate"},
     "fbgs": {"rate"},
     "catman": {"rate"},
 }
 #: files that people have at hand and no reader here can use
 _FOREIGN: Final = (
     (b"MDF ", "an ASAM MDF measurement"),
-    (b"MATLAB 5.0", "a MATLAB file"),
     (b"%PDF", "a PDF document"),
     (b"\x89PNG", "a picture"),
     (b"\xff\xd8\xff", "a picture"),

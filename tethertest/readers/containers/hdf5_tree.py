@@ -31,9 +31,8 @@ _NUMERIC: Final = "biuf"
 class Walk:
     """One walk through the groups of a file."""
 
-    def __init__(self, path: Path, *, is_matlab: bool = False) -> None:
+    def __init__(self, path: Path) -> None:
         self.path = path
-        self.is_matlab = is_matlab  #: axes are reversed, and names are joined by dots
         self.left_out: dict[str, str] = {}
         self._seen: set[Any] = set()
 
@@ -60,7 +59,7 @@ class Walk:
                 if count > OBJECTS:
                     message = f"the file holds more than {OBJECTS} objects"
                     raise FileFormatError(message, "export the channels alone", path=self.path)
-                place = self._joined(here, name)
+                place = f"{here}/{name}" if here else name
                 item = self._item(group, name, place)
                 if item is None:
                     continue
@@ -70,10 +69,6 @@ class Walk:
                     continue
                 self._add(name, place, item, leaves, records, scalars)
             yield Branch(here, tuple(leaves), tuple(records), facts_of(scalars))
-
-    def _joined(self, here: str, name: str) -> str:
-        separator = "." if self.is_matlab else "/"
-        return f"{here}{separator}{name}" if here else name
 
     def _item(self, group: Any, name: str, place: str) -> Any | None:
         """Return what a hard link leads to, each object once."""
@@ -85,8 +80,6 @@ class Walk:
             return None
         if isinstance(link, h5py.SoftLink):
             self.left_out[place] = f"is a link to {link.path[:80]!r}, which is not followed: name that"
-            return None
-        if self.is_matlab and name.startswith("#"):  # where MATLAB keeps the cells that others refer to
             return None
         item = group[name]
         info = h5py.h5o.get_info(item.id)
@@ -106,15 +99,6 @@ class Walk:
     ) -> None:
         shape = tuple(int(side) for side in item.shape) if item.shape is not None else ()
         kind = item.dtype.kind
-        if self.is_matlab and "MATLAB_class" in item.attrs:
-            matlab = text_attribute(item.attrs, "MATLAB_class")
-            if (
-                matlab in {"char", "cell", "struct", "function_handle"}
-                or "MATLAB_object_decode" in item.attrs
-            ):
-                if matlab not in {"char", "struct"}:
-                    self.left_out[place] = f"is a MATLAB {matlab or 'object'}"
-                return
         is_table = kind == "V" and item.dtype.names is not None and len(shape) == 1
         if not is_table and kind not in _NUMERIC:
             if kind == "c":
@@ -124,7 +108,7 @@ class Walk:
                 if value:
                     scalars[name] = value
             return
-        trouble = _trouble(item, shape)
+        trouble = trouble_of(item, shape)
         if trouble:
             self.left_out[place] = trouble
             return
@@ -133,7 +117,7 @@ class Walk:
                 names = tuple(_fields(item.dtype))
                 records.append(Records(name, shape[0], names, partial(self._loaded_records, item)))
             return
-        sides = tuple(side for side in reversed(shape) if side != 1) if self.is_matlab else _squeezed(shape)
+        sides = tuple(side for side in shape if side != 1)
         if not sides:
             if prod(shape) == 1:
                 scalars[name] = float(self._loaded(item, ()))
@@ -159,14 +143,11 @@ class Walk:
                 yield name, text
 
     def _loaded(self, item: Any, sides: tuple[int, ...]) -> Numbers:
-        values = self._values(item)
-        if self.is_matlab:
-            values = values.T
-        values = values.reshape(sides)
+        values = values_of(self.path, item).reshape(sides)
         return values.astype(np.int8) if values.dtype.kind == "b" else values
 
     def _loaded_records(self, item: Any) -> tuple[Column, ...]:
-        values = self._values(item)
+        values = values_of(self.path, item)
         units = next((found for key in UNIT_KEYS if (found := _texts(item.attrs, key))), ())
         names = list(_fields(item.dtype))
         columns = []
@@ -176,19 +157,23 @@ class Walk:
             columns.append(Column(name, unit, np.ascontiguousarray(cells)))
         return tuple(columns)
 
-    def _values(self, item: Any) -> Numbers:
-        try:
-            return np.asarray(item[()])
-        except (OSError, ValueError, RuntimeError, MemoryError) as error:
-            message = f"data set {item.name!r} cannot be read ({error})"
-            raise FileFormatError(message, "copy the whole file again", path=self.path) from error
+
+def values_of(path: Path, item: Any) -> Numbers:
+    """Return the values of a data set without `trouble_of`.
+
+    Raises
+    ------
+    FileFormatError
+        They cannot be read.
+    """
+    try:
+        return np.asarray(item[()])
+    except (OSError, ValueError, RuntimeError, MemoryError) as error:
+        message = f"data set {item.name!r} cannot be read ({error})"
+        raise FileFormatError(message, "copy the whole file again", path=path) from error
 
 
-def _squeezed(shape: tuple[int, ...]) -> tuple[int, ...]:
-    return tuple(side for side in shape if side != 1)
-
-
-def _trouble(item: Any, shape: tuple[int, ...]) -> str:
+def trouble_of(item: Any, shape: tuple[int, ...]) -> str:
     """Return why a data set is not read, before anything of it is."""
     if item.is_virtual or item.external is not None:
         return "keeps its values in another file"

@@ -19,7 +19,7 @@ from tethertest.records.run import Log
 _EXACT = 2**53
 
 
-def log_of(name: str, table: Table, settings: Log | None) -> RawLog:
+def log_of(name: str, table: Table, settings: Log | None, *, encoding: str = "") -> RawLog:
     """Return a table as a log.
 
     Parameters
@@ -30,6 +30,8 @@ def log_of(name: str, table: Table, settings: Log | None) -> RawLog:
         The one table that was chosen.
     settings : Log, optional
         The log's entry in run.toml.
+    encoding : str
+        Encoding of a file of text.
 
     Raises
     ------
@@ -61,6 +63,7 @@ def log_of(name: str, table: Table, settings: Log | None) -> RawLog:
         path=table.path,
         format=name,
         sha256=file_sha256(table.path),
+        encoding=encoding,
         start=axis.start,
         channels=with_units(table.path, channels, settings, table.names),
         date_order=axis.date_order,

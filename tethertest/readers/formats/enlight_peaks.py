@@ -8,6 +8,7 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, with_units
+from tethertest.readers.containers.limits import COLUMNS
 from tethertest.readers.formats.enlight import find_preamble
 from tethertest.readers.text.document import HEAD_BYTES, Head, file_sha256, read_document
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of
@@ -102,7 +103,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
 def _counts(rows: Rows, columns: Columns, fibres: int) -> np.ndarray[tuple[int, int], np.dtype[np.int64]]:
     """Return (n, fibres) numbers of peaks."""
     counts = np.column_stack([columns.numbers[1 + fibre] for fibre in range(fibres)])
-    wrong = np.any(~np.isfinite(counts) | (counts < 0) | (counts != np.rint(counts)), axis=1)
+    wrong = np.any(~((counts >= 0) & (counts <= COLUMNS) & (counts == np.rint(counts))), axis=1)
     if np.any(wrong):
         message = "the number of peaks of a channel is not a whole number"
         remedy = "export the peaks again from ENLIGHT; a file saved by a spreadsheet may have lost its counts"

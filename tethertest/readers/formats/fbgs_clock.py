@@ -22,6 +22,8 @@ _ROUND_RATES: Final = (
 )  # fmt: skip
 #: the rate is a slope between stamps this fraction of the log apart, so that one pause does not bend it
 _LAG_FRACTION: Final = 0.1
+#: whole numbers above this are not exact
+_WHOLE: Final = 2.0**53
 #: the logger may stamp a line this many lines late
 _LATE_LINES: Final = 3.0
 #: a pause shows when the stamps run ahead by this fraction of their resolution and by the late lines
@@ -111,7 +113,7 @@ def line_clock(
 
 
 def _number_steps(numbers: FloatArray, path: Path, lines: Integers) -> Integers:
-    wrong = ~np.isfinite(numbers) | (numbers != np.rint(numbers))
+    wrong = ~((np.abs(numbers) < _WHOLE) & (numbers == np.rint(numbers)))
     if np.any(wrong):
         row = int(np.argmax(wrong))
         message = "Linenumber is blank or no whole number"

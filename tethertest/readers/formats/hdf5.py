@@ -12,6 +12,7 @@ from tethertest.errors import FileFormatError, TethertestError
 from tethertest.readers.containers.choice import table_of
 from tethertest.readers.containers.hdf5_tree import Walk, text_attribute
 from tethertest.readers.containers.log import log_of
+from tethertest.readers.containers.rehearsal import rehearse
 from tethertest.readers.containers.table import refuse_settings
 from tethertest.readers.containers.tree import Tree
 from tethertest.readers.text.document import Head, read_bytes
@@ -22,6 +23,7 @@ NAME = "hdf5"
 MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 #: `format` of the root of a run that was written by `tethertest ingest`
 _STORE: Final = "tethertest-run"
+_REHEARSAL: Final = "tethertest.readers.formats.hdf5_rehearsal"
 
 
 def sniff(head: Head) -> str | None:
@@ -52,6 +54,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         file, is larger than a log may be, or is compressed in a way that is not known.
     """
     refuse_settings(path, settings, "an HDF5 log")
+    rehearse(path, _REHEARSAL)
     with opened(path) as file:
         if text_attribute(file.attrs, "format") == _STORE:
             message = "found a run that tethertest has stored, expected a raw log"

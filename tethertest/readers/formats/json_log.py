@@ -72,7 +72,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     branches = tuple(_branches(path, content, skip, left_out))
     tree = Tree(path, "the JSON log", "/", branches, left_out)
     table, settings = table_of(tree, settings)
-    return log_of(NAME, table, settings)
+    return log_of(NAME, table, settings, encoding=document.encoding)
 
 
 def _parsed(path: Path, body: bytes) -> Any:

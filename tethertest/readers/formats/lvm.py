@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import datetime as dt
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -23,6 +24,12 @@ from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.run import Log
 
 NAME = "lvm"
+#: an X column whose steps vary by less than this share is one of even samples, else Delta_X means nothing
+_UNEVEN: Final = 0.2
+#: X values are seconds, from the start or since 1904
+_LATEST: Final = 1e11
+#: share by which even steps may differ from Delta_X: both are rounded as they are written
+_OTHER: Final = 0.01
 _SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";"}
 
 
@@ -108,8 +115,9 @@ def _file_header(document: Document, settings: Log | None) -> tuple[dict[str, st
     """Return the keys of the file header, the separator and the decimal sign."""
     lines = document.lines(200)
     separator = next(
-        (line[len(key)] for line in lines for key in ("Writer_Version",) if line.startswith(key)), "\t"
+        (line[len(key) :][:1] for line in lines for key in ("Writer_Version",) if line.startswith(key)), ""
     )
+    separator = separator or "\t"
     keys: dict[str, str] = {}
     for line in lines:
         if line.startswith("***End_of_Header***"):
@@ -180,14 +188,42 @@ def _read_segment(
         place = 2 * channel if segment.x_columns == "multi" else 0
         values = columns.numbers[place + 1 if segment.x_columns == "multi" else channel + 1]
         size = _filled_size(values, segment.samples[channel])
+        if segment.counts_rows and size != segment.samples[channel]:
+            message = f"channel {segment.names[channel]!r} has values in {size} rows, the segment states "
+            message += f"{segment.samples[channel]} samples of it"
+            remedy = "copy the whole file from the logger again"
+            raise FileFormatError(message, remedy, path=path, line=segment.names_line)
         written = columns.numbers.get(place)
         time = segment.time(channel, size) if written is None else written[:size]
-        if np.any(np.isnan(time)):
-            line = int(rows.lines[np.argmax(np.isnan(time))])
-            message = "the row has no X value"
+        wrong = ~(np.abs(time) < _LATEST)
+        if np.any(wrong):
+            line = int(rows.lines[np.argmax(wrong)])
+            message = f"the row has no X value that is a time in seconds: {time[np.argmax(wrong)]:g}"
             raise FileFormatError(message, "export the log again", path=path, line=line)
+        if size > 1:
+            _check_interval(path, segment, channel, time)
         result.append((time, values[:size]))
     return result, [*columns.remarks, *events]
+
+
+def _check_interval(path: Path, segment: Segment, channel: int, time: FloatArray) -> None:
+    """Hold what the header states as the sampling interval against the times."""
+    stated = segment.intervals[channel]
+    steps = np.diff(time)
+    step = float(np.median(steps))
+    if segment.x_columns == "no" and not stated > 0:
+        message = f"Delta_X is {stated:g} and there is no X column: the samples have no time"
+    elif (
+        stated > 0
+        and step > 0
+        and float(np.ptp(steps)) < _UNEVEN * step
+        and abs(step - stated) > _OTHER * stated
+    ):
+        message = f"Delta_X is {stated:g} for {segment.names[channel]!r}, its X column steps by {step:g}"
+    else:
+        return
+    remedy = "correct Delta_X or the X column in a copy of the log, by the setting of the logger"
+    raise FileFormatError(message, remedy, path=path, line=segment.names_line)
 
 
 def _filled_size(values: FloatArray, stated: int) -> int:

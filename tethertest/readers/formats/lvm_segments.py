@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from tethertest.readers.text.document import Document
 from tethertest.records.arrays import FloatArray
 
 XColumns: TypeAlias = Literal["no", "one", "multi"]
+#: seconds and numbers of samples in a header stay far below
+_LARGEST: Final = 1e15
 _END = "***End_of_Header***"
 
 
@@ -144,7 +146,10 @@ def _numbers(document: Document, cells: list[str], count: int, step: int, line: 
     result = []
     for cell in _spread(cells, count, step):
         try:
-            result.append(float(cell.replace(",", ".")) if cell else 0.0)
+            number = float(cell.replace(",", ".")) if cell else 0.0
+            if not abs(number) < _LARGEST:
+                raise ValueError
+            result.append(number)
         except ValueError as error:
             message = f"found {cell!r} in the header of a segment, expected a number"
             raise FileFormatError(message, "export the log again", path=document.path, line=line) from error

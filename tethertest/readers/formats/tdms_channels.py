@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.channels import unique_names
 from tethertest.records.arrays import FloatArray
 
+#: sampling interval above which a property is damaged: a day [s]
+_LONGEST: Final = 86400.0
 _EPOCH = np.datetime64(0, "ns")
 Key: TypeAlias = tuple[str, str]  # group and channel
 
@@ -150,7 +152,8 @@ def _time_channel(group: Any) -> Any | None:
 
 
 def _increment(channel: Any) -> float:
-    return float(channel.properties.get("wf_increment", 0.0))
+    increment = float(channel.properties.get("wf_increment", 0.0))
+    return increment if increment <= _LONGEST else 0.0
 
 
 def _start(channel: Any, clock: Any | None) -> np.datetime64 | None:

@@ -8,6 +8,7 @@ Campbell Scientific, "LoggerNet Instruction Manual", appendix on table-oriented 
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,7 +33,8 @@ _ENVIRONMENT: Final = ("station", "model", "serial number", "system", "program",
 #: processing that leaves a sample as it was measured
 _SAMPLES: Final = frozenset(["", "smp", "sample"])
 #: columns that are no channel: the stamp and the record's number
-_STAMP, _RECORD = "TIMESTAMP", "RECORD"
+_STAMP, _RECORD, _RECORD_UNIT = "TIMESTAMP", "RECORD", "RN"
+_NUMBER: Final = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _EXPORT: Final = "export the table again as TOA5 with its four header rows"
 
 
@@ -84,11 +86,13 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     record = next((column for column, name in enumerate(header.names) if name.upper() == _RECORD), None)
     texts = {column for column in range(width) if header.units[column].upper() == "TS"} | {0}
     columns = read_columns(rows, width, header.names, texts=texts)
+    for column in texts - {0}:
+        _refuse_numbers(path, header.names[column], columns.texts[column], rows.lines)
     order = settings.date_order if settings is not None else None
     stamps = parse_stamps(columns.texts[0], path, rows.lines, order)
     time = stamps.seconds()
     channels = [
-        raw_channel(header.names[column], header.units[column], time, columns.numbers[column])
+        raw_channel(header.names[column], _unit(header.units[column]), time, columns.numbers[column])
         for column in range(width)
         if column not in texts and column != record
     ]
@@ -118,6 +122,19 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     )
 
 
+def _unit(written: str) -> str:
+    """Return a unit; ``RN`` marks numbers of records and is none, though it reads as ronnanewton."""
+    return "" if written.upper() == _RECORD_UNIT else written
+
+
+def _refuse_numbers(path: Path, name: str, cells: Sequence[str], lines: Sequence[int] | np.ndarray) -> None:
+    """Refuse numbers under the unit of stamps: the rows of units and names do not belong together."""
+    for row, cell in enumerate(cells):
+        if _NUMBER.fullmatch(cell.strip()):
+            message = f"column {name!r} has the unit TS, of stamps, and holds {cell.strip()!r}"
+            raise FileFormatError(message, _EXPORT, path=path, line=int(lines[row]))
+
+
 def _cells(line: str) -> list[str]:
     try:
         return [cell.strip() for cell in next(csv.reader([line], strict=False), [])]
@@ -133,6 +150,10 @@ def _read_header(document: Document) -> _Header:
             message = f"the header is cut: found {number - 1} of 4 rows, expected a row of {what}"
             raise FileFormatError(message, _EXPORT, path=path, line=number)
     environment, names, units, process = (list(_cells(line)) for line in lines)
+    if not environment or not names:
+        row = 1 if not environment else 2
+        message = f"the row of {_ROWS[row - 1]} has a stray carriage return or quote"
+        raise FileFormatError(message, _EXPORT, path=path, line=row)
     for number, cells in ((3, units), (4, process)):
         if len(cells) != len(names):
             message = (
@@ -145,6 +166,9 @@ def _read_header(document: Document) -> _Header:
     for column, name in enumerate(names):
         if not name:
             message = f"column {column + 1} has no name"
+            raise FileFormatError(message, _EXPORT, path=path, line=2)
+        if '"' in name:
+            message = f"found {name!r} in the row of names, expected a name in quotes"
             raise FileFormatError(message, _EXPORT, path=path, line=2)
         if name in names[:column]:
             first = names.index(name) + 1

@@ -1,0 +1,108 @@
+"""Read a file in another process first, where a library that a damaged file hangs or crashes does no harm.
+
+HDF5's library follows addresses in the file without end, or out of its memory, where damaged records of the
+file lead it there. No exception tells of that, so the first reading is one that may fail.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import json
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Final
+
+from tethertest.errors import FileFormatError
+
+#: what a small file may take: the first one also waits for the libraries to be loaded [s]
+_PATIENCE: Final = 30.0
+#: slowest reading of a sound file: deflated, from a network drive [bytes/s]
+_SLOWEST: Final = 2e6
+
+_busy = threading.Lock()
+_children: dict[str, subprocess.Popen[str]] = {}
+
+
+def rehearse(path: Path, module: str) -> None:
+    """Let another process read a file to its end.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    module : str
+        Module that, run as a script, reads each path given to it as a line of JSON and answers each by a line
+        of JSON: an empty list, or what is wrong with the file and what to do.
+
+    Raises
+    ------
+    FileFormatError
+        The other process refused the file, died of it, or was not done in a time that a sound file of this
+        size needs.
+    """
+    if not sys.executable:  # embedded in another program: there is no interpreter to start
+        return
+    limit = _PATIENCE + path.stat().st_size / _SLOWEST
+    with _busy:
+        child = _child(module)
+        assert child.stdin is not None
+        assert child.stdout is not None
+        overdue = threading.Timer(limit, child.kill)
+        overdue.start()
+        try:
+            child.stdin.write(json.dumps(str(path.absolute())) + "\n")
+            child.stdin.flush()
+            answer = json.loads(child.stdout.readline())
+        except (OSError, ValueError):  # it is gone, and its last line is none
+            answer = None
+        finally:
+            was_in_time = overdue.is_alive()
+            overdue.cancel()
+        if answer is None:
+            _end(module)
+    if answer is None:
+        how = "the library that reads it died of it"
+        if not was_in_time:
+            how = f"reading it did not end in {limit:.0f} s"
+        answer = [
+            f"the file's own records are damaged: {how}",
+            "copy the whole file again, or export it again",
+        ]
+    if answer:
+        problem, remedy = answer
+        raise FileFormatError(problem, remedy, path=path)
+
+
+def _child(module: str) -> subprocess.Popen[str]:
+    child = _children.get(module)
+    if child is None or child.poll() is not None:
+        if child is not None:
+            _end(module)
+        child = subprocess.Popen(
+            [sys.executable, "-m", module],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
+        _children[module] = child
+    return child
+
+
+def _end(module: str) -> None:
+    child = _children.pop(module)
+    child.kill()
+    for pipe in (child.stdin, child.stdout):
+        if pipe is not None:
+            with contextlib.suppress(OSError):  # what was not yet written to a process that is gone
+                pipe.close()
+    child.wait()
+
+
+@atexit.register
+def _end_all() -> None:
+    for module in list(_children):
+        _end(module)

@@ -1,0 +1,91 @@
+"""MATLAB files: variables and structs of numeric arrays."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from typing import Final
+
+from tethertest.errors import FileFormatError
+from tethertest.readers.containers import mat5, mat73
+from tethertest.readers.containers.choice import table_of
+from tethertest.readers.containers.log import log_of
+from tethertest.readers.containers.matlab_tree import tree_of
+from tethertest.readers.containers.rehearsal import rehearse
+from tethertest.readers.containers.table import refuse_settings
+from tethertest.readers.formats.hdf5 import opened
+from tethertest.readers.text.document import Head, read_bytes
+from tethertest.records.channel import RawLog
+from tethertest.records.run import Log
+
+NAME = "matlab"
+_HEADER_BYTES: Final = 128
+#: version and mark of the byte order at the end of the header
+_LEVEL_5: Final = {b"\x00\x01IM", b"\x01\x00MI"}
+_LEVEL_73: Final = {b"\x00\x02IM", b"\x02\x00MI"}
+_OCTAVE: Final = "# Created by Octave"
+_REHEARSAL: Final = "tethertest.readers.formats.matlab_rehearsal"
+_SAVE: Final = "save it with: save('log.mat', ..., '-v7')"
+
+
+def sniff(head: Head) -> str | None:
+    """Claim files with MATLAB's header of any version, and Octave's text."""
+    if head.data[124:128] in _LEVEL_5:
+        return "the header is that of a MATLAB file (version 5 to 7)"
+    if head.data[124:128] in _LEVEL_73:
+        return "the header is that of a MATLAB file of version 7.3"
+    if head.lines and head.lines[0].startswith(_OCTAVE):
+        return "the first line is that of an Octave file"
+    return "the first bytes are those of a MATLAB file of version 4" if _is_level_4(head.data) else None
+
+
+def read(path: Path, settings: Log | None = None) -> RawLog:
+    """Read a MATLAB log.
+
+    Parameters
+    ----------
+    path : Path
+        The log, plain or in gzip or zip.
+    settings : Log, optional
+        Its `table` is a struct or a matrix, its `time` a vector, by name or path (``"daq.t"``).
+
+    Returns
+    -------
+    RawLog
+        Vectors by their names; columns of a matrix by the texts beside it (``names``, ``channels``, ...), or
+        numbered; units from the field ``units`` beside them.
+
+    Raises
+    ------
+    FileFormatError
+        The file is damaged or cut, is of version 4 or Octave's text, or holds no table or several.
+    """
+    refuse_settings(path, settings, "a MATLAB file", allowed=("date_order",))
+    version = read_bytes(path, _HEADER_BYTES)[124:]
+    if version in _LEVEL_73:
+        rehearse(path, _REHEARSAL)
+        with opened(path) as file:
+            table, rest = table_of(tree_of(path, mat73.variables(path, file)), settings)
+        return log_of(NAME, table, rest)
+    data = read_bytes(path)
+    if version not in _LEVEL_5:
+        what = "Octave's text format" if data.startswith(_OCTAVE.encode()) else "MATLAB's format of version 4"
+        message = f"found {what}, which is not read"
+        raise FileFormatError(message, _SAVE, path=path)
+    table, rest = table_of(tree_of(path, mat5.variables(path, data)), settings)
+    return log_of(NAME, table, rest)
+
+
+def _is_level_4(data: bytes) -> bool:
+    """Return whether the first matrix has a header of version 4: type, sides, a name that ends with NUL."""
+    for order, machine in (("<", 0), (">", 1)):
+        if len(data) < 22:
+            return False
+        kind, rows, columns, is_complex, length = struct.unpack_from(f"{order}5i", data)
+        tens = (kind // 1000, kind // 100 % 10, kind // 10 % 10, kind % 10)  # machine, 0, precision, type
+        is_kind = kind >= 0 and tens[:2] == (machine, 0) and tens[2] <= 5 and tens[3] <= 2
+        name = data[20 : 20 + max(min(length, 64), 0)]
+        is_name = name.endswith(b"\0") and name[:-1].decode("latin-1").isidentifier()
+        if is_kind and rows >= 0 and columns >= 0 and is_complex in {0, 1} and is_name:
+            return True
+    return False

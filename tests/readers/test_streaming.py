@@ -7,6 +7,7 @@ import gzip
 import io
 import subprocess
 import sys
+import threading
 import zipfile
 from dataclasses import fields
 
@@ -182,6 +183,17 @@ def test_progress_counts_the_bytes_of_the_file(write, monkeypatch, compression):
     assert len(seen) > 2
     assert seen == sorted(seen)
     assert seen[-1] == (path.stat().st_size, path.stat().st_size)
+
+
+def test_a_log_dropped_half_read_waits_for_no_thread(write, monkeypatch):
+    """The garbage collector may drop it while another thread starts, and to join one there never ends."""
+    monkeypatch.setattr(textlog, "BLOCK_BYTES", 16)
+    pieces = stream_log(write("time [s],F\n" + "".join(f"{k},{k}.25\n" for k in range(80))), rows=1)
+    next(pieces)
+    joined = []
+    monkeypatch.setattr(threading.Thread, "join", lambda thread, timeout=None: joined.append(thread))
+    pieces.close()
+    assert joined == []
 
 
 def test_pieces_of_no_rows_make_no_sense(write):

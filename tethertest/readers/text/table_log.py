@@ -6,6 +6,7 @@ import os
 from collections import deque
 from collections.abc import Generator, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -101,10 +102,10 @@ def open_table(path: Path, settings: Log | None) -> TableLog:
     numbers = tuple(sorted({*channels, *time_only.numbers}))
     order = settings.date_order if settings is not None else None
     beginning = _parsed(text, layout, time_only, None)
-    first, lines = _first_rows(path, beginning)
-    later = ((parsed, its_lines) for parsed, its_lines, _ in beginning if len(its_lines))
-    settled = settle_scale(path, chosen, counter, 0, (first, lines), later, order, zone)
-    beginning.close()
+    with closing(beginning):
+        first, lines = _first_rows(path, beginning)
+        later = ((parsed, its_lines) for parsed, its_lines, _ in beginning if len(its_lines))
+        settled = settle_scale(path, chosen, counter, 0, (first, lines), later, order, zone)
     no_header = ("the log has no header; its columns are numbered",) if layout.numbered else ()
     return TableLog(
         text=text,
@@ -161,7 +162,8 @@ def _parsed(
     blocks = text.blocks(layout.first_line, blank, progress)
     waiting: deque[tuple[Future[Parsed], str]] = deque()
     line = layout.first_line
-    with ThreadPoolExecutor(workers) as pool:
+    pool = ThreadPoolExecutor(workers)
+    try:
         block: TextBlock | None
         while (block := next(blocks, None)) is not None or waiting:
             if block is not None:
@@ -178,3 +180,7 @@ def _parsed(
                 return
             yield parsed, parsed.lines + line, encoding
             line += parsed.line_count
+    finally:
+        # Without a wait: a log dropped half read is ended by the garbage collector, which may run within
+        # the start of another thread; to join one from there would wait for a lock that the start holds.
+        pool.shutdown(wait=False, cancel_futures=True)

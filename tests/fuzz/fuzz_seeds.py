@@ -15,6 +15,7 @@ from typing import Final
 
 import h5py
 import numpy as np
+import openpyxl
 import scipy.io
 from nptdms import ChannelObject, TdmsWriter
 
@@ -41,7 +42,7 @@ class Seed:
 
     @property
     def is_text(self) -> bool:
-        return self.reader not in {"tdms", "hdf5", "matlab", "archive"}
+        return self.reader not in {"tdms", "hdf5", "matlab", "excel", "archive"}
 
 
 def forces() -> np.ndarray:
@@ -217,6 +218,21 @@ def matlab_73() -> Seed:
     return Seed("matlab", "version 7.3", head + buffer.getvalue()[128:], NAMES, forces())
 
 
+def excel(compression: int) -> Seed:
+    book = openpyxl.Workbook()
+    book.active.append(["time [s]", *(f"{name} [N]" for name in NAMES)])
+    for row, values in enumerate(forces().tolist()):
+        book.active.append([row * STEP, *values])
+    written, buffer = io.BytesIO(), io.BytesIO()
+    book.save(written)
+    with zipfile.ZipFile(written) as source, zipfile.ZipFile(buffer, "w", compression) as target:
+        for name in source.namelist():  # openpyxl stamps each with the time of day
+            if not name.startswith("docProps"):
+                target.writestr(zipfile.ZipInfo(name), source.read(name), compression)
+    kind = "stored" if compression == zipfile.ZIP_STORED else "deflated"
+    return Seed("excel", kind, buffer.getvalue(), NAMES, forces())
+
+
 def archive() -> Seed:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as file:
@@ -239,6 +255,7 @@ def seeds() -> dict[str, tuple[Seed, ...]]:
         "toa5": (toa5(),),
         "hdf5": (hdf5(),),
         "matlab": (matlab(do_compression=False), matlab(do_compression=True), matlab_73()),
+        "excel": (excel(zipfile.ZIP_DEFLATED), excel(zipfile.ZIP_STORED)),
         "json": (json_rows(),),
         "archive": (archive(),),
         "delimited": (delimited(",", "."), delimited(";", ","), delimited("\t", ".")),

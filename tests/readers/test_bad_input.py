@@ -184,7 +184,7 @@ def test_workbook(tmp_path):
 
     with zipfile.ZipFile(tmp_path / "log.xlsx", "w") as archive:
         archive.writestr("xl/workbook.xml", "<x/>")
-    refused(tmp_path / "log.xlsx", "found an Excel workbook")
+    refused(tmp_path / "log.xlsx", "the workbook is damaged")
 
 
 def test_wrong_encoding_in_the_settings(write, settings):

@@ -1,7 +1,9 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tethertest.readers import read_log
@@ -28,7 +30,7 @@ def test_channels_are_described_in_si_with_what_is_wrong_with_them(write):
         "minimum": 500.0,
         "mean": pytest.approx(6500 / 6),
         "maximum": 2500.0,
-        "flags": {"missing": 1, "duplicate_time": 1, "backward_time": 1, "gap": 1},
+        "flags": {"missing": 1},
     }
     assert (strain["kind"], strain["minimum"]) == ("strain", pytest.approx(-1e-4))
     assert (temperature["kind"], temperature["maximum"]) == ("temperature", pytest.approx(295.15))
@@ -48,3 +50,23 @@ def test_the_object_is_json_and_says_why_the_reader_was_chosen(write):
 def test_an_empty_channel_has_no_numbers(write):
     channel = describe(read_log(write("time [s],F [N],T [degC]\n0.0,1,\n0.5,2,\n")))["channels"][1]
     assert (channel["minimum"], channel["mean"], channel["flags"]["missing"]) == (None, None, 2)
+
+
+def test_rows_without_a_stamp_count_and_span_nothing(write):
+    read = read_log(write("time [s],F [N]\n0.0,1\n0.1,2\n0.2,3\n0.3,4\n0.4,5\n"))
+    (channel,) = read.channels
+    time = channel.time.copy()
+    time[[0, 2]] = np.nan
+    found = describe(replace(read, channels=(replace(channel, time=time),)))
+    (said,) = json.loads(json.dumps(found, allow_nan=False))["channels"]
+    assert said["n"] == 5
+    assert said["duration"] == pytest.approx(0.3)
+    assert said["rate"] == pytest.approx(1.0 / np.median([0.2, 0.1]))
+
+
+def test_a_channel_without_any_stamp_has_no_rate(write):
+    read = read_log(write("time [s],F [N]\n0.0,1\n0.1,2\n0.2,3\n"))
+    (channel,) = read.channels
+    log = replace(read, channels=(replace(channel, time=np.full(3, np.nan)),))
+    (said,) = describe(log)["channels"]
+    assert (said["rate"], said["duration"], said["maximum"]) == (None, 0.0, 3.0)

@@ -75,6 +75,9 @@ def test_round_trip(write, x_columns, decimal, stated, line_end):
         assert channel.time.tolist() == [0.0, 0.25, 0.5, 0.75]
     assert log.start == dt.datetime(2026, 9, 5, 14, 20, 0, 500000)
     assert (log.format, log.decimal, log.rate, log.header_line) == ("lvm", decimal, 4.0, 21 + stated)
+    sign = {".": "point", ",": "comma"}[decimal]
+    unsaid = f"the header states no Decimal_Separator; the numbers have a decimal {sign}"
+    assert (unsaid in log.remarks) is not stated
 
 
 def test_text_events_become_remarks_and_move_no_value(write):

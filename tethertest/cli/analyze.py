@@ -28,6 +28,10 @@ def analyze(
     rigs: Annotated[
         Path | None, typer.Option(help="Folder of rig files [found upwards from the run].")
     ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="KEY=VALUE of a [[log]] entry, for a bare log; may be repeated."),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object on standard output.")
     ] = False,
@@ -45,6 +49,7 @@ def analyze(
         mains=mains,
         replay=replay,
         rigs=rigs,
+        settings=tuple(settings or ()),
     )
     found = analysis_summary(analyze_path(path, options))
     if as_json:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,8 +13,11 @@ from tethertest.conditioning.jumps import without_jumps
 from tethertest.conditioning.mapping import Pairing, is_grating, paired
 from tethertest.conditioning.stamps import Stamps, audited
 from tethertest.conditioning.starts import start_after
+from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, Flag, RawLog, Source
 from tethertest.records.run import Log, Run
+
+Timed = TypeVar("Timed")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,7 +50,7 @@ def as_logged(raw: RawLog, entry: Log, run: Run) -> LoggedChannels:
     start, start_findings = start_after(raw, entry, run.file.date)
     found = [*findings, *start_findings, *(Finding(entry.clock, "log", text, "note") for text in raw.remarks)]
     channels: list[Channel] = []
-    for group in _with_same_times(pairings):
+    for group in with_same_times(pairings, lambda pairing: pairing.raw.time):
         stamps = audited(group[0].raw.time + start, raw, entry.clock)
         found += stamps.findings
         columns = [_column(pairing, stamps, raw, entry) for pairing in group]
@@ -63,12 +67,12 @@ def as_logged(raw: RawLog, entry: Log, run: Run) -> LoggedChannels:
     return LoggedChannels(entry.clock, tuple(channels), tuple(found))
 
 
-def _with_same_times(pairings: Sequence[Pairing]) -> Iterator[list[Pairing]]:
-    """Yield the columns that share their stamps."""
-    left = list(pairings)
+def with_same_times(items: Sequence[Timed], time_of: Callable[[Timed], FloatArray]) -> Iterator[list[Timed]]:
+    """Yield the channels, or what stands for them, that share their stamps."""
+    left = list(items)
     while left:
-        time = left[0].raw.time
-        same = [item.raw.time is time or np.array_equal(item.raw.time, time) for item in left]
+        time = time_of(left[0])
+        same = [time_of(item) is time or np.array_equal(time_of(item), time, equal_nan=True) for item in left]
         yield [item for item, shared in zip(left, same, strict=True) if shared]
         left = [item for item, shared in zip(left, same, strict=True) if not shared]
 

@@ -38,6 +38,42 @@ class Stamps:
     steps: tuple[str, ...]  #: for the record
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Steps:
+    """What the steps between stamps are like, before anything is mended."""
+
+    median: float  #: of the steps forward [s]; 0 where there is none
+    duplicate: BoolArray  #: (n,) True where a stamp repeats the one before it, or goes back
+    backward: BoolArray  #: (n,) True where time goes back
+    gap: BoolArray  #: (n,) True behind a step longer than `GAP_STEPS` median steps
+    jitter: float  #: standard deviation of the steps that are no gaps and no repeats [s]
+
+    @property
+    def coarse(self) -> bool:
+        """Whether so many stamps repeat that the clock is coarser than the rows."""
+        return int(np.count_nonzero(self.duplicate)) > COARSE_FRACTION * self.duplicate.size
+
+
+def steps_of(time: FloatArray) -> Steps:
+    """Sort the steps between stamps.
+
+    Parameters
+    ----------
+    time : ndarray
+        (n,) [s], finite, as logged.
+    """
+    step = np.diff(time)
+    median = float(np.median(step[step > 0])) if np.any(step > 0) else 0.0
+    ordinary = step[(step > (2.0 - GAP_STEPS) * median) & (step < GAP_STEPS * median)]
+    return Steps(
+        median,
+        np.concatenate(([False], step <= DUPLICATE_FRACTION * median)),
+        np.concatenate(([False], step < 0)),
+        np.concatenate(([False], step > GAP_STEPS * median)),
+        float(np.std(ordinary)) if ordinary.size else 0.0,
+    )
+
+
 def audited(time: FloatArray, raw: RawLog, clock: str) -> Stamps:
     """Audit one column of stamps.
 
@@ -70,19 +106,15 @@ def audited(time: FloatArray, raw: RawLog, clock: str) -> Stamps:
         time = _interpolated(time, missing, raw)
         text = f"{raw.path.name}: {np.count_nonzero(missing)} rows have no stamp; interpolated by row"
         findings.append(Finding(clock, "missing_time", text, samples=int(np.count_nonzero(missing))))
-    step = np.diff(time)
-    median = float(np.median(step[step > 0])) if np.any(step > 0) else 0.0
-    _check_order(time, step, median, raw)
+    seen = steps_of(time)
+    median, duplicate, backward, jitter = seen.median, seen.duplicate, seen.backward, seen.jitter
+    _check_order(time, np.diff(time), median, raw)
     flags = np.where(missing, np.uint16(Flag.MISSING), np.uint16(0)).astype(np.uint16)
-    duplicate = np.concatenate(([False], step <= DUPLICATE_FRACTION * median))
-    backward = np.concatenate(([False], step < 0))
     flags[duplicate & ~backward] |= np.uint16(Flag.DUPLICATE_TIME)
     flags[backward] |= np.uint16(Flag.BACKWARD_TIME)
     rows = np.ones(time.size, dtype=bool)
     steps: list[str] = []
-    coarse = np.count_nonzero(duplicate) > COARSE_FRACTION * time.size
-    ordinary = step[(step > (2.0 - GAP_STEPS) * median) & (step < GAP_STEPS * median)]
-    jitter = float(np.std(ordinary)) if ordinary.size else 0.0
+    coarse = seen.coarse
     if coarse or backward.any() or jitter > JITTER_FRACTION * median:
         kind = "quantised_time" if coarse else "jitter"
         words = f"steps of {1e3 * median:.4g} ms with repeats" if coarse else f"jitter {1e3 * jitter:.3g} ms"

@@ -32,6 +32,7 @@ class Options:
     mains: float = MAINS  #: [Hz]
     replay: bool = False  #: analyse the replayed channels of a run too
     rigs: Path | None = None  #: folder of rig files
+    settings: tuple[str, ...] = ()  #: of a bare log, as ``KEY=VALUE``
 
 
 def asked_options(
@@ -43,6 +44,7 @@ def asked_options(
     mains: str = "50 Hz",
     replay: bool = False,
     rigs: Path | None = None,
+    settings: tuple[str, ...] = (),
 ) -> Options:
     """Return options from texts; a bare number is in Hz or s.
 
@@ -59,6 +61,7 @@ def asked_options(
         mains=_hertz("--mains", mains),
         replay=replay,
         rigs=rigs,
+        settings=settings,
     )
 
 

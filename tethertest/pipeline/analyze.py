@@ -20,6 +20,7 @@ from tethertest.pipeline.analyze_log import analyze_log
 from tethertest.pipeline.bare_log import bare_channels, check_usable
 from tethertest.pipeline.conditioned import conditioned, placed, read_logs
 from tethertest.pipeline.expect import expectation
+from tethertest.pipeline.read_bare import settings_of_a_run
 from tethertest.pipeline.stored import run_of
 from tethertest.pipeline.wave_findings import measured_waves, medium_of, replayed_waves
 from tethertest.readers import load_run
@@ -59,6 +60,8 @@ def analyze(path: Path, options: Options) -> Analysis:
     TethertestError
         The path cannot be read, or cannot be analysed as asked.
     """
+    if options.settings and (path.is_dir() or is_store(path)):
+        raise settings_of_a_run(path)
     if path.is_dir():
         if not (path / "run.toml").is_file():
             message = "the folder has no run.toml"
@@ -77,7 +80,7 @@ def analyze(path: Path, options: Options) -> Analysis:
     if options.replay:
         message = "--replay: a log that belongs to no run cannot be replayed"
         raise DataError(message, "name a run folder with run.toml", path=path)
-    channels, remarks = bare_channels(path, options.channels)
+    channels, remarks = bare_channels(path, options.channels, options.settings)
     try:
         return analyze_log(str(path), path.name, channels, options, remarks)
     except DataError as error:

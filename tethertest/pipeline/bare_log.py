@@ -10,9 +10,8 @@ from typing import Final
 import numpy as np
 
 from tethertest.errors import DataError, QuantityError
-from tethertest.readers import read_log
-from tethertest.records.channel import Channel, Flag, RawChannel, Source
-from tethertest.records.run import Log
+from tethertest.pipeline.read_bare import read_bare
+from tethertest.records.channel import Channel, Flag, RawChannel, RawLog, Source
 from tethertest.signal.noise import white_noise
 from tethertest.units import UnitScale, channel_scale
 
@@ -23,7 +22,7 @@ JITTER: Final = 0.05
 
 
 def bare_channels(
-    path: Path, names: Sequence[str] = (), settings: Log | None = None
+    path: Path, names: Sequence[str] = (), words: Sequence[str] = ()
 ) -> tuple[tuple[Channel, ...], tuple[str, ...]]:
     """Read a log's channels in SI, on the log's own clock.
 
@@ -33,8 +32,8 @@ def bare_channels(
         The log.
     names : sequence of str
         Channels wanted; all of those that can be used where empty.
-    settings : Log, optional
-        What the file itself leaves open.
+    words : sequence of str
+        What the file itself leaves open, as ``KEY=VALUE``.
 
     Returns
     -------
@@ -46,7 +45,7 @@ def bare_channels(
     TethertestError
         The log cannot be read, has no such channel, or a channel asked for cannot be used.
     """
-    log = read_log(path, settings)
+    log = read_bare(path, words)
     known = {channel.name: channel for channel in log.channels}
     for name in names:
         if name not in known:
@@ -56,7 +55,8 @@ def bare_channels(
     remarks = list(log.remarks)
     for name in names or known:
         try:
-            channel, said = _channel(known[name], path, log.sha256, log.format)
+            channel, said = si_channel(known[name], log)
+            check_usable(channel)
         except DataError as error:
             if names:
                 raise error.located(path) from error
@@ -91,7 +91,16 @@ def check_usable(channel: Channel) -> None:
         raise DataError(message, "check that the sensor was connected, or take the channel out")
 
 
-def _channel(raw: RawChannel, path: Path, digest: str, reader: str) -> tuple[Channel, list[str]]:
+def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
+    """Return a channel in SI on the log's own clock, and remarks on what was left out or is not known.
+
+    Parameters
+    ----------
+    raw : RawChannel
+        A channel of the log.
+    log : RawLog
+        The log.
+    """
     remarks: list[str] = []
     try:
         scale = channel_scale(raw.unit)
@@ -115,7 +124,6 @@ def _channel(raw: RawChannel, path: Path, digest: str, reader: str) -> tuple[Cha
             text = f"its samples are {low:.4g} to {high:.4g} s apart; spectra take them as {usual:.4g} s"
             remarks.append(f"channel {raw.name!r}: {text}")
     flags = np.where(np.isfinite(values[kept]), Flag.NONE, Flag.MISSING).astype(np.uint16)
-    source = Source(path.name, digest, reader, raw.unit, "log")
+    source = Source(log.path.name, log.sha256, log.format, raw.unit, "log")
     channel = Channel(raw.name, scale.kind, scale.unit, time, values[kept], flags, source=source)
-    check_usable(channel)
     return replace(channel, noise=white_noise(channel.values)), remarks

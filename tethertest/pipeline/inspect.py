@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from tethertest.errors import TethertestError
+from tethertest.pipeline.inspect_flags import shown_flags
+from tethertest.pipeline.log_entry import entry_text
+from tethertest.pipeline.read_bare import read_bare, settings_of_a_run
 from tethertest.pipeline.store_summary import describe_store
+from tethertest.pipeline.time_bases import time_bases
 from tethertest.readers import load_run, read_log
+from tethertest.readers.config.given import given_settings, settings_toml
 from tethertest.readers.inspect import describe
+from tethertest.readers.registry import identified
+from tethertest.records.channel import RawLog
+from tethertest.records.run import Log
 from tethertest.store import is_store
 
 
-def inspect_path(path: Path, rigs: Path | None = None) -> dict[str, Any]:
+def inspect_path(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -> dict[str, Any]:
     """Describe a log, a run store, or every log of a run folder.
 
     Parameters
@@ -21,19 +30,110 @@ def inspect_path(path: Path, rigs: Path | None = None) -> dict[str, Any]:
         A log or a run store (no rig needed), or a run folder.
     rigs : Path, optional
         Folder of rig files.
+    words : sequence of str
+        Settings of a bare log as ``KEY=VALUE``.
+
+    Returns
+    -------
+    dict
+        The object of ``inspect --json``. A run folder's logs that cannot be read are told as `refusal` does.
 
     Raises
     ------
     TethertestError
-        The path or a file in it cannot be read.
+        A bare log, a store or a run file cannot be read, or a setting is wrong.
     """
+    if words and (path.is_dir() or is_store(path)):
+        raise settings_of_a_run(path)
     if is_store(path):
-        return describe_store(path)
+        return {**describe_store(path), "refused": False}
     if not path.is_dir():
-        return describe(read_log(path))
+        return described(read_bare(path, words), settings_toml(words))
     if not (path / "run.toml").is_file():
         message = "the folder has no run.toml"
-        raise TethertestError(message, "name a run folder, or a single log", path=path)
+        raise TethertestError(message, "name a run folder, or single logs", path=path)
     run = load_run(path, rigs)
-    logs = [describe(read_log(run.folder / log.file, log)) for log in run.file.log]
-    return {"run": run.file.id, "rig": run.rig.name, "logs": logs}
+    logs = [_log_of_run(run.folder / log.file, log) for log in run.file.log]
+    refused = any(log["refused"] for log in logs)
+    return {"run": run.file.id, "rig": run.rig.name, "refused": refused, "logs": logs}
+
+
+def inspected(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -> dict[str, Any]:
+    """Return what `inspect_path` says, or the refusal of a file that cannot be read.
+
+    Raises
+    ------
+    TethertestError
+        A setting is wrong, whatever the file.
+    """
+    settings = given_settings(path, words)
+    if settings is not None and (path.is_dir() or is_store(path)):
+        raise settings_of_a_run(path)
+    try:
+        return inspect_path(path, rigs, words)
+    except TethertestError as error:
+        return refusal(path, error, settings)
+
+
+def refusal(path: Path, error: TethertestError, settings: Log | None = None) -> dict[str, Any]:
+    """Return why a file is refused, with the keys of a log that was read where they are known.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    error : TethertestError
+        What the reader said.
+    settings : Log, optional
+        What it was read with.
+    """
+    name, reason = None, None
+    if path.is_file():
+        try:
+            reader, reason = identified(path, settings)
+            name = reader.NAME
+        except TethertestError:
+            pass  # no reader claims the file: that is what the error says
+    elsewhere = error.path is not None and error.path != str(path)
+    return {
+        "path": str(path),
+        "refused": True,
+        "format": name,
+        "reason": reason,
+        "line": error.line,
+        "message": f"{error.path}: {error.problem}" if elsewhere else error.problem,
+        "remedy": error.remedy,
+    }
+
+
+def described(log: RawLog, settings: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Describe a log as read: what it holds, what its stamps are like, and what its values show.
+
+    Parameters
+    ----------
+    log : RawLog
+        As read.
+    settings : mapping, optional
+        What was given to read a bare log, as TOML has it; absent for a log that run.toml has.
+    """
+    found = describe(log)
+    bases = time_bases(log)
+    shown, remarks = shown_flags(log)
+    of_time = {name: base["flags"] for base in bases for name in base["channels"]}
+    for channel in found["channels"]:
+        name = channel["name"]
+        channel["flags"] = {**channel["flags"], **of_time[name], **shown.get(name, {})}
+    return {
+        **found,
+        "refused": False,
+        "time_bases": bases,
+        "remarks": [*found["remarks"], *remarks],
+        "entry": None if settings is None else entry_text(log, settings),
+    }
+
+
+def _log_of_run(path: Path, log: Log) -> dict[str, Any]:
+    try:
+        return described(read_log(path, log))
+    except TethertestError as error:
+        return refusal(path, error, log)

@@ -10,9 +10,6 @@ from tethertest.errors import QuantityError
 from tethertest.records.channel import Flag, RawChannel, RawLog
 from tethertest.units import UnitScale, channel_scale
 
-#: a step this many times the usual one is a gap
-GAP_STEPS = 1.5
-
 
 def describe(log: RawLog) -> dict[str, Any]:
     """Describe a log as read, before any conditioning.
@@ -49,27 +46,21 @@ def describe(log: RawLog) -> dict[str, Any]:
 def _channel(channel: RawChannel, remarks: list[str]) -> dict[str, Any]:
     scale = _scale(channel, remarks)
     values = channel.values[np.isfinite(channel.values)] * scale.factor + scale.offset
-    steps = np.diff(channel.time)
+    time = channel.time[np.isfinite(channel.time)]  # a row may have no stamp
+    steps = np.diff(time)
     forward = steps[steps > 0]
-    usual = float(np.median(forward)) if forward.size else 0.0
     return {
         "name": channel.name,
         "kind": scale.kind,
         "unit_as_written": channel.unit,
         "unit": scale.unit,
         "n": int(channel.values.size),
-        "rate": 1.0 / usual if usual > 0 else None,
-        "duration": float(channel.time.max() - channel.time.min()) if channel.time.size else 0.0,
+        "rate": 1.0 / float(np.median(forward)) if forward.size else None,
+        "duration": float(time.max() - time.min()) if time.size else 0.0,
         "minimum": float(values.min()) if values.size else None,
         "mean": float(values.mean()) if values.size else None,
         "maximum": float(values.max()) if values.size else None,
-        "flags": {
-            "missing": int(channel.values.size - values.size),
-            "duplicate_time": int(np.count_nonzero(steps == 0)),
-            "backward_time": int(np.count_nonzero(steps < 0)),
-            "gap": int(np.count_nonzero(steps > GAP_STEPS * usual)) if usual > 0 else 0,
-            **_told(channel),
-        },
+        "flags": {"missing": int(channel.values.size - values.size), **_told(channel)},
     }
 
 

@@ -14,6 +14,7 @@ from tethertest.readers.formats import (
     enlight_peaks,
     enlight_sensors,
     enlight_spectrum,
+    excel,
     fbgs,
     hdf5,
     json_log,
@@ -55,6 +56,7 @@ READERS: Final[tuple[Reader, ...]] = (
     hdf5,
     matlab,
     json_log,
+    excel,
     archive,
     delimited,
 )
@@ -63,6 +65,7 @@ GENERIC: Final[Reader] = delimited
 _MAPPED: Final = {
     "archive": {"table", "columns", "time", "rate"},
     "hdf5": {"table", "columns", "time", "rate"},
+    "excel": {"table", "columns", "time", "rate"},
     "delimited": {"columns", "time", "rate"},
     "json": {"table", "columns", "time", "rate"},
     "matlab": {"table", "columns", "time", "rate"},

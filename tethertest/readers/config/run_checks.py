@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import codecs
 import re
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath, PureWindowsPath
-from zoneinfo import ZoneInfo
 
-from tethertest.errors import QuantityError
-from tethertest.readers.config.mapping_checks import mapping_problems
+from tethertest.readers.config.log_checks import setting_problems
 from tethertest.readers.config.problems import NAME_SHOWN, Problem, is_file_name, suggestion
-from tethertest.readers.timeunits import is_time_unit
 from tethertest.records.rig import Rig
 from tethertest.records.run import Drive, Log, RunFile, Windows
-from tethertest.units import channel_scale
 
 #: kind of drive -> keys it needs; the others it must not have
 DRIVE_KEYS = {
@@ -26,7 +21,6 @@ DRIVE_KEYS = {
 #: keys that a kind of drive may have besides
 OPTIONAL_DRIVE_KEYS = {"measured": {"frequency"}}
 _DRIVE_EXAMPLES = {"frequency": '"0.3 Hz"', "radius": '"0.1 m"', "amplitude": '"0.1 m"'}
-_UTC_OFFSET = re.compile(r"[+-](0\d|1[0-4]):?[0-5]\d")
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 
 
@@ -103,22 +97,7 @@ def _log_problems(index: int, log: Log, rig: Rig, folder: Path) -> Iterator[Prob
         if sensor not in sensors:
             text = f"found {sensor!r}, expected a sensor of {rig.name!r}"
             yield Problem((*key, "channels", name), text, suggestion(sensor, sensors))
-    if log.skip_rows < 0:
-        text = f"found {log.skip_rows}, expected 0 or more rows"
-        yield Problem((*key, "skip_rows"), text, "count the rows to leave out from the top")
-    if log.encoding is not None and not _is_encoding(log.encoding):
-        text = f"found {log.encoding!r}, which is no known encoding"
-        yield Problem((*key, "encoding"), text, "use one such as utf-8, cp1252, gbk or utf-16")
-    if log.time_zone is not None and not _is_zone(log.time_zone):
-        text = f"found {log.time_zone!r}, expected a time zone"
-        yield Problem((*key, "time_zone"), text, 'write "Asia/Shanghai" or "+08:00"')
-    for name, unit in log.units.items():
-        try:
-            if not is_time_unit(unit):
-                channel_scale(unit)
-        except QuantityError as error:
-            yield Problem((*key, "units", name), error.problem, error.remedy)
-    yield from mapping_problems(key, log)
+    yield from setting_problems(key, log)
 
 
 def _path_problems(key: tuple[str | int, ...], file: str, folder: Path) -> Iterator[Problem]:
@@ -186,21 +165,3 @@ def _span_problems(key: tuple[str | int, ...], span: tuple[float, float]) -> Ite
     if not span[0] < span[1]:
         text = f"found a span from {span[0]:g} s to {span[1]:g} s, expected the start first"
         yield Problem(key, text, "correct the two times")
-
-
-def _is_encoding(name: str) -> bool:
-    try:
-        codecs.lookup(name)
-    except LookupError:
-        return False
-    return True
-
-
-def _is_zone(name: str) -> bool:
-    if _UTC_OFFSET.fullmatch(name):
-        return True
-    try:
-        ZoneInfo(name)
-    except (OSError, ValueError, KeyError):  # an unknown zone is a KeyError
-        return False
-    return True

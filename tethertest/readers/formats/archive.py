@@ -8,7 +8,8 @@ from pathlib import Path
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.containers.table import listed, toml_text
-from tethertest.readers.containers.zips import ZIP_MAGIC, is_workbook, member_stream, members, opened_zip
+from tethertest.readers.containers.workbook import is_in
+from tethertest.readers.containers.zips import ZIP_MAGIC, member_stream, members, opened_zip
 from tethertest.readers.text.document import Head, file_sha256
 from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
@@ -17,8 +18,9 @@ NAME = "archive"
 
 
 def sniff(head: Head) -> str | None:
-    """Claim zip archives that do not hold one log alone: these are read without being named."""
-    return "the first bytes are a zip archive's" if head.data.startswith(ZIP_MAGIC) else None
+    """Claim zip archives that are no workbooks and do not hold one log alone, which needs no name."""
+    is_archive = head.data.startswith(ZIP_MAGIC) and not is_in(head.path)
+    return "the first bytes are a zip archive's" if is_archive else None
 
 
 def read(path: Path, settings: Log | None = None) -> RawLog:
@@ -39,16 +41,13 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     Raises
     ------
     FileFormatError
-        No member is named or there is none of that name; the archive is a workbook, damaged, encrypted, in
+        No member is named or there is none of that name; the archive is damaged, encrypted, in
         another archive, or unpacks to more than a log may hold.
     """
     with path.open("rb") as stream:
         if stream.read(len(ZIP_MAGIC)) != ZIP_MAGIC:
             raise _nested(path)
         archive = opened_zip(stream, path)
-        if is_workbook(archive):
-            message = "found an Excel workbook, expected a log"
-            raise FileFormatError(message, "save the sheet as CSV (UTF-8)", path=path)
         found = {info.filename: info for info in members(archive)}
         if len(found) == 1:
             raise _nested(path)

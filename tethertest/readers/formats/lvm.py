@@ -68,6 +68,9 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     first = segments[0]
     names, remarks = unique_names(first.names)
     notes = list(remarks)
+    if not header.get("Decimal_Separator") and (settings is None or settings.decimal is None):
+        sign = {".": "point", ",": "comma"}[decimal]
+        notes.append(f"the header states no Decimal_Separator; the numbers have a decimal {sign}")
     start, date_order = None, ""
     pieces: dict[int, list[tuple[FloatArray, FloatArray]]] = {column: [] for column in range(len(names))}
     for number, segment in enumerate(segments, start=1):

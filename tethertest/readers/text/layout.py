@@ -22,7 +22,8 @@ from tethertest.readers.text.table import MISSING_TOKENS, SPACES, is_number
 from tethertest.records.run import Log
 
 _SEPARATORS: Final = ("\t", ";", ",", "|", SPACES)
-_SPELLINGS: Final = {
+#: what people write for a separator
+SPELLINGS: Final = {
     "tab": "\t", "\\t": "\t", "comma": ",", "semicolon": ";", "space": SPACES, "spaces": SPACES, " ": SPACES,
 }  # fmt: skip
 _COMMENT: Final = ("#", "%", "//")
@@ -129,7 +130,7 @@ def find_layout(source: TextSource, settings: Log | None) -> Layout:
 def _find_separator(
     path: Path, plain: list[tuple[int, str]], wanted: str | None
 ) -> tuple[str, list[Line], int]:
-    candidates = _SEPARATORS if wanted is None else (_SPELLINGS.get(wanted, wanted),)
+    candidates = _SEPARATORS if wanted is None else (SPELLINGS.get(wanted, wanted),)
     best: tuple[float, str, list[Line], int] | None = None
     for separator in candidates:
         lines = [Line(number, split_row(text, separator)) for number, text in plain]

@@ -1,0 +1,78 @@
+"""Reading a log that belongs to no run: what run.toml would hold is given by ``--set``, and errors say so."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from tethertest.errors import FileFormatError, TethertestError
+from tethertest.readers import read_log
+from tethertest.readers.config.given import given_settings
+from tethertest.readers.config.structure import field_types
+from tethertest.records.channel import RawLog
+from tethertest.records.run import Log
+
+#: the option that stands for the log's entry in run.toml
+SET: Final = "--set"
+_RUN_FILE: Final = "run.toml"
+_HERE: Final = f"in {_RUN_FILE}"
+#: how a remedy names a key; some keys are plain words, too
+_ASKED: Final = r"\b{key} = |\b(?:set|correct|remove|check) (?:\w+(?:,| or| and) )*{key}\b"
+
+
+def read_bare(path: Path, words: Sequence[str] = ()) -> RawLog:
+    """Read a log without a run.
+
+    Parameters
+    ----------
+    path : Path
+        The log.
+    words : sequence of str
+        Settings as ``KEY=VALUE``; see `tethertest.readers.config.given.given_settings`.
+
+    Raises
+    ------
+    TethertestError
+        A setting is wrong, or the log cannot be read; what a setting would mend names ``--set``.
+    """
+    settings = given_settings(path, words)
+    try:
+        log = read_log(path, settings)
+    except FileFormatError as error:
+        raise bare_error(error, given=settings is not None) from error
+    if settings is None:
+        return log
+    remarks = tuple(remark.replace(_HERE, f"in {SET}") for remark in log.remarks)
+    return replace(log, remarks=remarks, reason=log.reason.replace(_RUN_FILE, SET))
+
+
+def bare_error(error: FileFormatError, *, given: bool) -> TethertestError:
+    """Return a reader's error in the words of the command line.
+
+    Parameters
+    ----------
+    error : FileFormatError
+        It speaks of the log's entry in run.toml.
+    given : bool
+        Whether settings were given: then it is these that it speaks of.
+    """
+    problem = error.problem.replace(_RUN_FILE, SET) if given else error.problem
+    remedy = error.remedy
+    if _HERE in remedy:
+        keys = [key for key in field_types(Log) if re.search(_ASKED.format(key=key), remedy)]
+        word = _word(keys[0]) if len(keys) == 1 else "KEY=VALUE"
+        remedy = f"{remedy} (or here: {SET} {word})"
+    return FileFormatError(problem, remedy, path=error.path, line=error.line)
+
+
+def settings_of_a_run(path: Path) -> TethertestError:
+    """Return the error about settings beside something that is no bare log."""
+    message = f"{SET} is for a log that belongs to no run"
+    return TethertestError(message, "write the keys into [[log]] of the run's run.toml", path=path)
+
+
+def _word(key: str) -> str:
+    return "units.NAME=UNIT" if key == "units" else f"{key}=VALUE"

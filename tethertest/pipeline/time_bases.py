@@ -1,0 +1,124 @@
+"""What the stamps of a log are like, in numbers and in a sentence; nothing is mended here."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from tethertest.conditioning.logged import with_same_times
+from tethertest.conditioning.stamps import JITTER_FRACTION, Steps, steps_of
+from tethertest.pipeline.bare_log import JITTER
+from tethertest.records.arrays import BoolArray, FloatArray
+from tethertest.records.channel import RawLog
+
+#: steps off the usual one in more than this share of the rows are the logger's habit, not single gaps
+HABIT: Final = 0.05
+#: a step is a whole multiple of the usual one if it differs by less than this share of it
+MULTIPLE: Final = 0.01
+#: places named in a sentence; all are counted
+PLACES: Final = 3
+
+
+def time_bases(log: RawLog) -> list[dict[str, Any]]:
+    """Describe the time of a log's channels, once for those that share it.
+
+    Parameters
+    ----------
+    log : RawLog
+        As read.
+
+    Returns
+    -------
+    list of dict
+        Times in seconds after the log's start, counts of flags, and a sentence under ``text``.
+    """
+    groups = with_same_times(log.channels, lambda channel: channel.time)
+    return [_base([channel.name for channel in group], group[0].time) for group in groups]
+
+
+def _base(names: list[str], stamps: FloatArray) -> dict[str, Any]:
+    time = stamps[np.isfinite(stamps)]
+    missing = int(stamps.size - time.size)
+    found: dict[str, Any] = {"channels": names, "n": int(stamps.size), "first": None, "last": None}
+    if time.size:
+        found |= {"first": float(time.min()), "last": float(time.max())}
+    if time.size < 2:
+        flags = {"missing_time": missing, "duplicate_time": 0, "backward_time": 0, "gap": 0}
+        return {**found, "step": None, "uneven": 0, "flags": flags, "text": f"{time.size} stamps, no rate"}
+    seen = steps_of(time)
+    # a row in the wrong place is no hole in the record
+    ordered = np.unique(time) if seen.backward.any() else time
+    holes = steps_of(ordered).gap
+    step = np.diff(ordered)
+    repeats = seen.duplicate & ~seen.backward
+    return {
+        **found,
+        "step": seen.median or None,
+        "shortest_step": float(step.min()),
+        "longest_step": float(step.max()),
+        "mean_rate": (time.size - 1) / float(time.max() - time.min()) if time.max() > time.min() else None,
+        "jitter": seen.jitter,
+        "uneven": int(np.count_nonzero(_uneven(step, seen.median))),
+        "flags": {
+            "missing_time": missing,
+            "duplicate_time": int(np.count_nonzero(repeats)),
+            "backward_time": int(np.count_nonzero(seen.backward)),
+            "gap": int(np.count_nonzero(holes)),
+        },
+        "text": _sentence(time, ordered, seen, holes, repeats, missing),
+    }
+
+
+def _uneven(step: FloatArray, usual: float) -> BoolArray:
+    """Return which steps are not the usual one; stamps that repeat are told by themselves."""
+    return np.asarray((np.abs(step - usual) > JITTER * usual) & (step > 0.0), dtype=bool)
+
+
+def _sentence(
+    time: FloatArray, ordered: FloatArray, seen: Steps, holes: BoolArray, repeats: BoolArray, missing: int
+) -> str:
+    if seen.median == 0.0:
+        return "no stamp is later than the one before it"
+    step = np.diff(ordered)
+    uneven = _uneven(step, seen.median)
+    count, share = int(np.count_nonzero(uneven)), float(np.mean(uneven))
+    said = [f"{time.size} stamps from {ordered[0]:.6g} to {ordered[-1]:.6g} s, every {_seconds(seen.median)}"]
+    if share > HABIT:
+        rate = (time.size - 1) / float(time.max() - time.min())
+        off = step[uneven]
+        words = f"jittered: {count} of {step.size} steps ({100 * share:.3g} %) are not that, but "
+        words += " to ".join(dict.fromkeys((_seconds(float(off.min())), _seconds(float(off.max())))))
+        if np.all(np.abs(off / seen.median - np.round(off / seen.median)) < MULTIPLE):
+            words += ", all of them whole multiples of it"
+        said.append(f"{words}; the mean rate is {rate:.4g} Hz")
+    elif seen.jitter > JITTER_FRACTION * seen.median:
+        said.append(f"jittered by {_seconds(seen.jitter)} (standard deviation)")
+    elif holes.any():
+        long = int(np.argmax(step))
+        longest = f"the longest {_seconds(float(step[long]))} after {ordered[long]:.6g} s"
+        said.append(f"{_number(holes, 'gap')}, {longest}")
+    if repeats.any():
+        said.append(f"{_number(repeats, 'stamp')} repeated, at {_places(time[repeats])}")
+    if seen.backward.any():
+        said.append(f"{_number(seen.backward, 'step')} backward, to {_places(time[seen.backward])}")
+    if missing:
+        said.append(f"{missing} rows without a stamp")
+    return "; ".join(said) if len(said) > 1 else f"{said[0]}, even"
+
+
+def _number(marked: BoolArray, what: str) -> str:
+    count = int(np.count_nonzero(marked))
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def _places(times: FloatArray) -> str:
+    more = f" and {times.size - PLACES} more" if times.size > PLACES else ""
+    return ", ".join(f"{time:.6g} s" for time in times[:PLACES]) + more
+
+
+def _seconds(value: float) -> str:
+    size = abs(value)
+    if size == 0.0 or size >= 1.0:
+        return f"{value:.6g} s"
+    return f"{1e3 * value:.4g} ms" if size >= 1e-3 else f"{1e6 * value:.4g} us"

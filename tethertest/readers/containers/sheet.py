@@ -1,0 +1,104 @@
+"""One worksheet as a grid of cells, whatever Excel makes of their formats."""
+
+from __future__ import annotations
+
+import datetime as dt
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+from tethertest.errors import FileFormatError
+from tethertest.readers.containers.limits import SHEET_CELLS
+from tethertest.readers.containers.time import CLOCK_UNIT
+from tethertest.readers.containers.workbook import Merged, checked_sheet, column_name, merged_cells
+
+#: what is no part of the number in a format: quoted, escaped, padding, and brackets other than [h], [m], [s]
+_LITERAL: Final = re.compile(r'"[^"]*"|\\.|_.|\*.|\[(?!h+\]|m+\]|s+\])[^\]]*\]')
+
+
+@dataclass(frozen=True, slots=True)
+class Dated:
+    """A number that is shown as a date or a time of day."""
+
+    value: float
+    unit: str  #: one of the calendars, or a part of a day
+
+
+@dataclass(frozen=True, slots=True)
+class Wrong:
+    """What Excel shows where a formula has no value, such as ``#DIV/0!``."""
+
+    text: str
+
+
+Cell: TypeAlias = "float | int | bool | str | Dated | Wrong | None"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sheet:
+    """The cells of one worksheet, from A1 on."""
+
+    path: Path
+    name: str
+    rows: list[list[Cell]]
+    merged: list[Merged]
+
+    def error(self, problem: str, remedy: str, row: int, column: int | None = None) -> FileFormatError:
+        """Return an error of a row and a column, counted from 0."""
+        place = f"row {row + 1}" if column is None else f"cell {column_name(column + 1)}{row + 1}"
+        return FileFormatError(f"sheet {self.name!r} {place}: {problem}", remedy, path=self.path)
+
+
+def sheet_of(path: Path, book: Any, worksheet: Any, parts: dict[str, bytes]) -> Sheet:
+    """Read the cells of a worksheet.
+
+    Raises
+    ------
+    FileFormatError
+        It holds more cells than a log, cells out of order, or formulas without a value.
+    """
+    from openpyxl.utils.datetime import CALENDAR_MAC_1904
+
+    name = worksheet.title
+    text = checked_sheet(path, name, parts, worksheet._worksheet_path.removeprefix("/"))
+    calendar = "excel-1904" if book.epoch == CALENDAR_MAC_1904 else "excel"
+    units: dict[str, str] = {}
+    rows: list[list[Cell]] = []
+    count = 0
+    worksheet.reset_dimensions()  # what the sheet says of its own size is not believed
+    for cells in worksheet.iter_rows():
+        count += len(cells) + 1
+        if count > SHEET_CELLS:
+            message = f"sheet {name!r} holds more than {SHEET_CELLS} cells"
+            raise FileFormatError(message, "export the log as text", path=path)
+        rows.append([_cell(cell, units, calendar) for cell in cells])
+    return Sheet(path, name, rows, merged_cells(text))
+
+
+def _cell(cell: Any, units: dict[str, str], calendar: str) -> Cell:
+    value = cell.value
+    if value is None:
+        return None
+    if cell.data_type == "e":
+        return Wrong(str(value))
+    if isinstance(value, dt.datetime):  # written as an ISO stamp
+        return value.isoformat(sep=" ")
+    if isinstance(value, bool | str):
+        return value.strip() or None if isinstance(value, str) else value
+    if not isinstance(value, int | float):
+        return str(value)
+    form = cell.number_format
+    if form not in units:
+        units[form] = date_unit(form, calendar)
+    return Dated(float(value), units[form]) if units[form] else value
+
+
+def date_unit(form: str, calendar: str) -> str:
+    """Return what a number of this format counts: days of a calendar, days, or "" for a plain number."""
+    letters = set(_LITERAL.sub("", form.lower().split(";")[0]).replace("general", ""))
+    if letters & set("yd"):
+        return calendar
+    if letters & set("hs"):
+        return CLOCK_UNIT
+    return calendar if "m" in letters and not letters & set("0#?") else ""

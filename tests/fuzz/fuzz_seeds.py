@@ -6,11 +6,14 @@ is read under another name is seen at once.
 
 from __future__ import annotations
 
+import datetime as dt
 import io
 import json
+import tempfile
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 import h5py
@@ -42,7 +45,7 @@ class Seed:
 
     @property
     def is_text(self) -> bool:
-        return self.reader not in {"tdms", "hdf5", "matlab", "excel", "archive"}
+        return self.reader not in {"tdms", "hdf5", "matlab", "mdf", "excel", "archive"}
 
 
 def forces() -> np.ndarray:
@@ -218,6 +221,21 @@ def matlab_73() -> Seed:
     return Seed("matlab", "version 7.3", head + buffer.getvalue()[128:], NAMES, forces())
 
 
+def mdf(version: str, compression: int = 0) -> Seed:
+    from asammdf import MDF, Signal
+
+    time = np.arange(ROWS) * STEP
+    columns = zip(NAMES, forces().T, strict=True)
+    with MDF(version=version) as file:
+        file.start_time = dt.datetime(2026, 9, 5, 14, 20, tzinfo=dt.UTC)
+        file.append([Signal(column, time, name=name, unit="N") for name, column in columns])
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / ("log.mf4" if version >= "4" else "log.mdf")
+            file.save(path, compression=compression)
+            data = path.read_bytes()
+    return Seed("mdf", f"version {version}, compression {compression}", data, NAMES, forces())
+
+
 def excel(compression: int) -> Seed:
     book = openpyxl.Workbook()
     book.active.append(["time [s]", *(f"{name} [N]" for name in NAMES)])
@@ -255,6 +273,7 @@ def seeds() -> dict[str, tuple[Seed, ...]]:
         "toa5": (toa5(),),
         "hdf5": (hdf5(),),
         "matlab": (matlab(do_compression=False), matlab(do_compression=True), matlab_73()),
+        "mdf": (mdf("4.10"), mdf("4.11", 2), mdf("3.30")),
         "excel": (excel(zipfile.ZIP_DEFLATED), excel(zipfile.ZIP_STORED)),
         "json": (json_rows(),),
         "archive": (archive(),),

@@ -7,6 +7,7 @@ import shutil
 import sys
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,8 @@ import pytest
 
 from tethertest.cli import main
 from tethertest.errors import TethertestError
-from tethertest.pipeline.inspect import inspect_path, inspected
+from tethertest.pipeline.inspect import described, inspect_path, inspected
+from tethertest.readers import read_log
 from tethertest.readers.config.structure import structure
 from tethertest.records.run import Log
 
@@ -238,6 +240,15 @@ def test_jitter_of_the_stamps_is_given_in_seconds(tmp_path: Path) -> None:
     assert base["flags"]["gap"] == 0
 
 
+def test_stamps_that_repeat_are_not_counted_as_uneven_too(tmp_path: Path) -> None:
+    time, values = signal()
+    time = time.copy()
+    time[500:2000:100] = time[499:1999:100]
+    (base,) = inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values}))["time_bases"]
+    assert base["flags"]["duplicate_time"] == 15
+    assert base["uneven"] == 15  # the steps behind them, twice as long
+
+
 def test_a_gap_a_repeat_and_a_row_out_of_place_are_each_told_once(tmp_path: Path) -> None:
     time, values = signal()
     kept = (time < 5.0) | (time >= 6.0)
@@ -270,11 +281,12 @@ def test_a_stuck_second_is_counted_at_any_resolution(tmp_path: Path, digit_noise
     assert found["dead"]["stuck"] == pytest.approx(1000, abs=4)
 
 
-def test_a_slow_signal_in_coarse_digits_is_not_stuck(tmp_path: Path) -> None:
+@pytest.mark.parametrize("seed", range(3))
+def test_a_slow_signal_in_coarse_digits_is_not_stuck(tmp_path: Path, seed: int) -> None:
     time, _ = signal()
-    slow = (
-        20.0 + 0.5 * np.sin(2.0 * np.pi * 0.02 * time) + np.random.default_rng(3).normal(0.0, 0.03, time.size)
-    )
+    # the last seconds are so quiet that a digit of 0.1 stays for half a second and longer
+    noise = np.random.default_rng(seed).normal(0.0, 1.0, time.size) * np.where(time < 16.0, 0.15, 0.01)
+    slow = 20.0 + 0.3 * np.sin(2.0 * np.pi * 0.05 * time) + noise
     assert flags(log(tmp_path / "a.csv", time, {"T [degC]": slow}, digits=1))["T"]["stuck"] == 0
 
 
@@ -315,9 +327,10 @@ def test_a_number_that_stands_for_no_value_is_told(tmp_path: Path, code: float, 
     assert any(item.startswith(f"channel 'F': 3 values are {code:g}") for item in remarks) is is_told
 
 
-def test_a_force_of_999_among_others_is_no_code(tmp_path: Path) -> None:
+@pytest.mark.parametrize("scale", [100.0, 70.0])
+def test_a_force_of_999_among_or_little_above_others_is_no_code(tmp_path: Path, scale: float) -> None:
     time, values = signal()
-    values = np.round(100.0 * values)
+    values = np.round(scale * values)
     values[5] = 999.0
     assert not inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values}))["remarks"]
 
@@ -325,3 +338,30 @@ def test_a_force_of_999_among_others_is_no_code(tmp_path: Path) -> None:
 def test_a_folder_that_is_no_run_is_refused(tmp_path: Path) -> None:
     with pytest.raises(TethertestError, match=r"has no run\.toml"):
         inspect_path(tmp_path)
+
+
+@pytest.mark.parametrize("absurd", ["1e308", "-1e308", "5e-324", "1e-320", "9e99"])
+def test_absurd_numbers_are_described_and_break_nothing(tmp_path: Path, absurd: str) -> None:
+    path = log(tmp_path / "a.csv", *_one_channel())
+    lines = path.read_text(encoding="utf-8").splitlines()
+    for row in (5, 6, 900):
+        lines[row] = f"{lines[row].split(',')[0]},{absurd}"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    said = json.loads(json.dumps(inspect_path(path), allow_nan=False))
+    beyond = any("values beyond 1e100, which no sensor gives" in remark for remark in said["remarks"])
+    assert beyond is (abs(float(absurd)) > 1e100)
+
+
+def test_stamps_that_are_missing_or_infinite_are_counted(tmp_path: Path) -> None:
+    read = read_log(log(tmp_path / "a.csv", *_one_channel()))
+    (channel,) = read.channels
+    time, values = channel.time.copy(), channel.values.copy()
+    time[[3, 700]], values[[9, 10]] = np.nan, np.inf
+    said = described(replace(read, channels=(replace(channel, time=time, values=values),)), {})
+    json.dumps(said, allow_nan=False)
+    assert said["channels"][0]["flags"]["missing_time"] == 2
+    assert said["channels"][0]["flags"]["missing"] == 2
+    assert "2 rows without a stamp" in said["time_bases"][0]["text"]
+    nowhere = described(replace(read, channels=(replace(channel, time=np.full(time.size, np.nan)),)), {})
+    assert nowhere["time_bases"][0]["text"] == "0 stamps, no rate"
+    assert nowhere["channels"][0]["rate"] is None

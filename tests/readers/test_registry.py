@@ -69,7 +69,7 @@ def test_an_unknown_format_lists_the_known_ones(write, settings):
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (b"MDF     4.10    \0\0\0\0", "an ASAM MDF measurement"),
+        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0\0", "an old Office document"),
         (bytes(range(256)) * 4, "a binary file of unknown kind"),
     ],
 )

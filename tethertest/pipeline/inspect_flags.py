@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -15,6 +16,8 @@ from tethertest.records.channel import Channel, Flag, RawLog
 
 #: flags that only the values themselves show
 _SHOWN: Final = (Flag.STUCK, Flag.SATURATED, Flag.SPIKE)
+#: squares of larger numbers cannot be added
+LARGEST: Final = 1e100
 #: a channel that mostly repeats itself is a state or a slow reading, not a signal at its limit
 HELD: Final = 0.5
 #: where more than this share of the values only repeats the one before, digits are coarse and a slow signal
@@ -56,8 +59,15 @@ def shown_flags(log: RawLog) -> tuple[dict[str, dict[str, int]], list[str]]:
                 flags[raw.name] = {"stuck": int(values.size), "saturated": 0, "spike": 0}
                 remarks.append(f"channel {raw.name!r}: constant, all values are {values[0]:.6g}")
                 continue
+            if float(np.max(np.abs(values))) > LARGEST:
+                text = "values beyond 1e100, which no sensor gives; it is not looked at for flags"
+                remarks.append(f"channel {raw.name!r}: {text}")
+                continue
             remarks += [f"channel {raw.name!r}: {text}" for text in _codes(values)]
-            varied.append(with_plateaus_flagged(si_channel(raw, log)[0]))
+            known = np.where(np.isfinite(raw.values), raw.values, np.nan)
+            channel = si_channel(replace(raw, values=known), log)[0]
+            if channel.time.size >= FEWEST_SAMPLES and np.isfinite(channel.values).any():
+                varied.append(with_plateaus_flagged(channel))
         for channel in with_spikes_flagged(varied):
             marked = {flag: (channel.flags & np.uint16(flag)) != 0 for flag in _SHOWN}
             if np.mean(marked[Flag.STUCK] | marked[Flag.SATURATED]) > HELD:

@@ -34,7 +34,8 @@ def time_bases(log: RawLog) -> list[dict[str, Any]]:
         Times in seconds after the log's start, counts of flags, and a sentence under ``text``.
     """
     groups = with_same_times(log.channels, lambda channel: channel.time)
-    return [_base([channel.name for channel in group], group[0].time) for group in groups]
+    with np.errstate(over="ignore"):  # stamps that are no seconds at all
+        return [_base([channel.name for channel in group], group[0].time) for group in groups]
 
 
 def _base(names: list[str], stamps: FloatArray) -> dict[str, Any]:
@@ -58,7 +59,7 @@ def _base(names: list[str], stamps: FloatArray) -> dict[str, Any]:
         "shortest_step": float(step.min()),
         "longest_step": float(step.max()),
         "mean_rate": (time.size - 1) / float(time.max() - time.min()) if time.max() > time.min() else None,
-        "jitter": seen.jitter,
+        "jitter": seen.jitter if np.isfinite(seen.jitter) else None,
         "uneven": int(np.count_nonzero(_uneven(step, seen.median))),
         "flags": {
             "missing_time": missing,

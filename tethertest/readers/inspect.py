@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -45,23 +46,30 @@ def describe(log: RawLog) -> dict[str, Any]:
 
 def _channel(channel: RawChannel, remarks: list[str]) -> dict[str, Any]:
     scale = _scale(channel, remarks)
-    values = channel.values[np.isfinite(channel.values)] * scale.factor + scale.offset
+    with np.errstate(over="ignore", invalid="ignore"):  # what is then infinite is told as unknown
+        values = channel.values[np.isfinite(channel.values)] * scale.factor + scale.offset
+        mean = float(values.mean()) if values.size else math.nan
     time = channel.time[np.isfinite(channel.time)]  # a row may have no stamp
     steps = np.diff(time)
     forward = steps[steps > 0]
+    rate = 1.0 / float(np.median(forward)) if forward.size else math.nan
     return {
         "name": channel.name,
         "kind": scale.kind,
         "unit_as_written": channel.unit,
         "unit": scale.unit,
         "n": int(channel.values.size),
-        "rate": 1.0 / float(np.median(forward)) if forward.size else None,
+        "rate": _known(rate),
         "duration": float(time.max() - time.min()) if time.size else 0.0,
-        "minimum": float(values.min()) if values.size else None,
-        "mean": float(values.mean()) if values.size else None,
-        "maximum": float(values.max()) if values.size else None,
+        "minimum": _known(float(values.min())) if values.size else None,
+        "mean": _known(mean),
+        "maximum": _known(float(values.max())) if values.size else None,
         "flags": {"missing": int(channel.values.size - values.size), **_told(channel)},
     }
+
+
+def _known(number: float) -> float | None:
+    return number if math.isfinite(number) else None
 
 
 def _told(channel: RawChannel) -> dict[str, int]:

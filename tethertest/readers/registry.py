@@ -20,6 +20,7 @@ from tethertest.readers.formats import (
     json_log,
     lvm,
     matlab,
+    mdf,
     tdms,
     toa5,
 )
@@ -55,6 +56,7 @@ READERS: Final[tuple[Reader, ...]] = (
     toa5,
     hdf5,
     matlab,
+    mdf,
     json_log,
     excel,
     archive,
@@ -69,12 +71,12 @@ _MAPPED: Final = {
     "delimited": {"columns", "time", "rate"},
     "json": {"table", "columns", "time", "rate"},
     "matlab": {"table", "columns", "time", "rate"},
+    "mdf": {"table"},
     "fbgs": {"rate"},
     "catman": {"rate"},
 }
 #: files that people have at hand and no reader here can use
 _FOREIGN: Final = (
-    (b"MDF ", "an ASAM MDF measurement"),
     (b"%PDF", "a PDF document"),
     (b"\x89PNG", "a picture"),
     (b"\xff\xd8\xff", "a picture"),

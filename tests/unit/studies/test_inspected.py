@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -48,6 +49,15 @@ def test_a_refusal_has_its_line_and_remedy_and_no_path_of_the_machine(folder: Pa
     assert row[7].startswith("refused: line 2: the date 5/9/... can be read as day/month")
     assert "Fix: set date_order" in row[7]
     assert str(folder) not in page(folder)
+
+
+def test_a_file_in_an_archive_is_named_without_the_path_of_the_machine(folder: Path) -> None:
+    with zipfile.ZipFile(folder / "two.zip", "w") as archive:
+        archive.write(folder / "inner" / "open.csv", "open.csv")
+        archive.write(folder / "good.csv", "good.csv")
+    rows = {row[0]: row for row in rows_of(folder, [("two.zip", "table=open.csv")])}
+    said = rows["two.zip --set table=open.csv"][7]
+    assert said.startswith("refused: line 2: two.zip:open.csv: the date 5/9/... can be read")
 
 
 def test_a_setting_adds_a_row(folder: Path) -> None:

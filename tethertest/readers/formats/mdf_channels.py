@@ -1,0 +1,162 @@
+"""The channels of an opened MDF file, group by group."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from tethertest.errors import FileFormatError
+from tethertest.readers.channels import raw_channel, unique_names
+from tethertest.readers.containers.table import listed, toml_text
+from tethertest.readers.timeunits import SECONDS
+from tethertest.records.arrays import FloatArray, frozen
+from tethertest.records.channel import RawChannel
+
+#: what the master of a group counts, and conversions by a formula in the file, in version 4 and 3
+_TIME: Final = 1
+_FORMULA: Final = {True: 3, False: 10}
+#: remarks on single channels before they are only counted
+_SHOWN: Final = 8
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Group:
+    number: int
+    name: str
+    channels: list[int]
+    trouble: str  #: why none of it is read
+
+
+def channels_of(path: Path, file: Any, wanted: str | None) -> tuple[list[RawChannel], list[str]]:
+    """Return the channels with numbers and a time, and remarks on all others.
+
+    Parameters
+    ----------
+    path : Path
+        The file, for messages.
+    file : asammdf.MDF
+        The opened file.
+    wanted : str, optional
+        Name of the only group to be read.
+
+    Raises
+    ------
+    FileFormatError
+        There is no such group, or no such channel.
+    """
+    groups = _groups(file)
+    if wanted is not None and wanted not in {group.name for group in groups}:
+        known = listed(group.name for group in groups)
+        message = f"run.toml says table = {toml_text(wanted)}, the MDF file has {known}"
+        lines = " or ".join(f"table = {toml_text(group.name)}" for group in groups[:4])
+        raise FileFormatError(message, f"write for this log in run.toml: {lines}", path=path)
+    found: list[tuple[str, RawChannel]] = []
+    remarks: list[str] = []
+    for group in groups:
+        if wanted in {None, group.name}:
+            if group.trouble:
+                remarks.append(f"the channels of {group.name!r} are left out: {group.trouble}")
+            else:
+                found += [(group.name, channel) for channel in _read(file, group, remarks)]
+    if not found:
+        told = "; ".join(remarks[:_SHOWN]) or "it is empty"
+        message = f"the MDF file has no channel with numbers and a time: {told}"
+        raise FileFormatError(message, "export the log again with its time", path=path)
+    more = len(remarks) - 2 * _SHOWN
+    remarks = [*remarks[: 2 * _SHOWN], *([f"{more} more remarks of this kind"] if more > 0 else [])]
+    if wanted is None and len({name for name, _ in found}) > 1:
+        remarks.append(f"groups with a time of their own: {listed(dict(found))}")
+    return _with_names(found, remarks), remarks
+
+
+def _groups(file: Any) -> list[_Group]:
+    written = [_name(group) for group in file.groups]
+    repeated = Counter(written)
+    found = []
+    for number, group in enumerate(file.groups):
+        name = written[number]
+        if not name or repeated[name] > 1:
+            name = f"group {number + 1}"
+        master = file.masters_db.get(number)
+        own = file.virtual_groups_map.get(number, number)
+        trouble = ""
+        if own != number:
+            trouble = "their time is in another group, a layout that is not read"
+        elif master is None or getattr(group.channels[master], "sync_type", _TIME) != _TIME:
+            trouble = "the group has no time"
+        elif _time_unit(group.channels[master]) not in SECONDS:
+            trouble = f"their time has the unit {group.channels[master].unit[:20]!r}"
+        elif not group.channel_group.cycles_nr:
+            trouble = "the group has no samples"
+        found.append(_Group(number, name, [k for k in range(len(group.channels)) if k != master], trouble))
+    return found
+
+
+def _name(group: Any) -> str:
+    """Return the name of the acquisition, or the first line of version 3's comment."""
+    block = group.channel_group
+    text = str(getattr(block, "acq_name", "") or (getattr(block, "comment", "") if _is_old(group) else ""))
+    return text.strip().split("\n")[0][:80]
+
+
+def _is_old(group: Any) -> bool:
+    """Return whether a group is one of version 3."""
+    return not hasattr(group.channel_group, "acq_name")
+
+
+def _read(file: Any, group: _Group, remarks: list[str]) -> list[RawChannel]:
+    source = file.groups[group.number]
+    kept = []
+    for index in group.channels:
+        channel = source.channels[index]
+        if _has_formula(channel.conversion, _FORMULA[not _is_old(source)]):
+            remarks.append(f"channel {channel.name!r} has a formula as conversion and is left out")
+        else:
+            kept.append(index)
+    signals = file.select([(None, group.number, index) for index in kept], copy_master=False) if kept else []
+    found = []
+    time: FloatArray | None = None
+    for signal in signals:
+        samples = np.asarray(signal.samples)
+        if samples.dtype.kind not in "biuf" or samples.ndim != 1:
+            remarks.append(f"channel {signal.name!r} holds no single numbers and is left out")
+            continue
+        if time is None:  # channels of one group share the array
+            factor = SECONDS[_time_unit(source.channels[file.masters_db[group.number]])]
+            time = frozen(np.asarray(signal.timestamps, dtype=np.float64) * factor)
+        values = samples.astype(np.float64)
+        invalid = signal.invalidation_bits
+        if invalid is not None and np.any(bad := np.asarray(invalid, dtype=bool)):
+            values[bad] = np.nan
+            count = np.count_nonzero(bad)
+            remarks.append(f"channel {signal.name!r}: {count} values marked as invalid read as missing")
+        found.append(raw_channel(signal.name, str(signal.unit or "").strip(), time, values))
+    return found
+
+
+def _time_unit(channel: Any) -> str:
+    """Return the unit of a group's time, which the standard says is a second."""
+    return str(getattr(channel, "unit", "") or "").strip().lower() or "s"
+
+
+def _has_formula(conversion: Any, kind: int) -> bool:
+    """Return whether a conversion, or one that it refers to, is a formula: nothing of a file is evaluated."""
+    if conversion is None:
+        return False
+    if getattr(conversion, "conversion_type", None) == kind:
+        return True
+    inner = getattr(conversion, "referenced_blocks", None) or {}
+    return any(_has_formula(block, kind) for block in inner.values() if hasattr(block, "conversion_type"))
+
+
+def _with_names(found: list[tuple[str, RawChannel]], remarks: list[str]) -> list[RawChannel]:
+    repeated = Counter(channel.name for _, channel in found)
+    names, renamed = unique_names(
+        f"{group}/{channel.name}" if repeated[channel.name] > 1 else channel.name for group, channel in found
+    )
+    remarks += renamed
+    return [replace(channel, name=name) for name, (_, channel) in zip(names, found, strict=True)]

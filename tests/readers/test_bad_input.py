@@ -229,3 +229,13 @@ def test_spectrum(write):
 
 def test_prose(write):
     refused(write("Dear colleague,\nthe log is on the other disk.\n"), "found no rows of numbers")
+
+
+def test_ascii_in_the_settings_of_a_log_that_is_none(write, settings):
+    text = "LabVIEW Measurement\t\nSeparator\tTab\nDescription\t°C\n***End_of_Header***\t\n"
+    error = refused(
+        write(text, encoding="cp1252"),
+        "byte 0xb0 does not belong to the encoding ascii",
+        settings(encoding="ascii"),
+    )
+    assert error.line == 3

@@ -358,3 +358,14 @@ def test_rows_of_separators_behind_the_data(write):
 def test_quoted_stamps_with_blanks(write):
     log = read_log(write('time,F\n" 2026-09-05 14:20:00 ",1\n"2026-09-05 14:20:01",2\n'))
     assert only(log).time.tolist() == [0.0, 1.0]
+
+
+def test_two_tables_side_by_side_are_refused(write, settings):
+    path = write("t,F,t,G\n0,1,0.5,2\n1,2,1.5,3\n2,3,2.5,4\n")
+    with pytest.raises(
+        FileFormatError, match="'t' of the time in column 1 also stands over column 3"
+    ) as caught:
+        read_log(path)
+    assert caught.value.line == 1
+    log = read_log(path, settings(columns=("t", "F", "t_G", "G"), skip_rows=1))
+    assert [channel.name for channel in log.channels] == ["F", "t_G", "G"]

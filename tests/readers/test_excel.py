@@ -229,9 +229,26 @@ def merged(block):
     return fill
 
 
+SECOND = [(k, 2.0) for k in range(9)]
 ODD = {
     "text among numbers": (put(B5="broken"), r"'log' cell B5: found 'broken' in 'F_top', expected a number"),
-    "number as text": (put(B5="5.25"), r"cell B5: found '5.25'.*\n.*stored as text: convert it"),
+    "number as text": (put(B5="5.25"), r"cell B5: found '5.25'.*\n.*stored as text are no numbers"),
+    "all numbers as text": (
+        lambda sheet: filled(sheet, (("t", "F"),), [(k / 9, str(k / 7)) for k in range(20)]),
+        "'F' holds numbers stored as text",
+    ),
+    "tables beside each other": (
+        lambda sheet: (filled(sheet), filled(sheet, (("t2 [s]", "G"),), SECOND, (1, 5))),
+        "found tables beside each other, each with a time: 'time', 't2'",
+    ),
+    "tables side by side": (
+        lambda sheet: (filled(sheet), filled(sheet, (("t2 [s]", "G"),), SECOND, (1, 4))),
+        "in units of time that all increase steadily: 'time', 't2'",
+    ),
+    "the time twice": (
+        lambda sheet: filled(sheet, (("t", "F", "t", "G"),), [(k, 1.0, 2 * k, 2.0) for k in range(9)]),
+        "found two columns of time, both called 't'",
+    ),
     "true": (put(B5=True), r"cell B5: found True in 'F_top', expected a number"),
     "a date": (put(B5=dt.datetime(2026, 9, 5)), "cell B5: found a date in 'F_top', expected a number"),
     "a blank row": (put(A25=0.5, B25=1.0, C25=1.0), "sheet 'log' row 22: a blank row within the table"),
@@ -249,6 +266,24 @@ ODD = {
 @pytest.mark.parametrize(("fill", "words"), ODD.values(), ids=ODD)
 def test_what_is_not_clear_is_refused_with_its_place(made, fill, words):
     refused(made(fill), words)
+
+
+def test_the_first_row_may_lack_values(made):
+    rows = [(0.0, None, "LOST"), *((k / 50, 1.0, 2.0) for k in range(1, 9))]
+    log = read_log(made(lambda sheet: filled(sheet, (("time [s]", "F", "G"),), rows)))
+    assert [channel.values.size for channel in log.channels] == [9, 9]
+
+
+def test_a_column_of_true_and_false_is_1_and_0_and_says_so(made):
+    rows = [(time, float(k % 3), k % 2 == 0) for k, time in enumerate(T.tolist())]
+    log = read_log(made(lambda sheet: filled(sheet, (("time [s]", "F", "trigger"),), rows)))
+    assert log.channels[1].values[:3].tolist() == [1.0, 0.0, 1.0]
+    assert log.channels[1].unit == ""
+    assert "column 'trigger' holds true and false, read as 1 and 0" in log.remarks
+
+
+def test_a_line_of_means_below_the_table_is_refused(made):
+    refused(made(put(A22="Mean", B22=5.2, C22=-5.2)), "cell A22: found 'Mean' in 'time', expected a number")
 
 
 def test_merged_titles_above_the_table_do_no_harm(made):
@@ -271,6 +306,13 @@ HOSTILE = {
     "cells backwards": (in_sheet(b'<c r="B5"', b'<c r="D5"'), "cell C5 stands after a later one"),
     "rows backwards": (in_sheet(b'<row r="7"', b'<row r="3"'), "row 3 stands after a later one"),
     "a cell without a place": (in_sheet(b'<c r="B5"', b"<c"), "do not say where they stand"),
+    "the strict form": (
+        lambda _, text: text.replace(
+            b"http://schemas.openxmlformats.org/spreadsheetml/2006/main",
+            b"http://purl.oclc.org/ooxml/spreadsheetml/main",
+        ),
+        "'Strict Open XML'",
+    ),
     "a column too far": (in_sheet(b'r="C5"', b'r="ZZZ5"'), "damaged|no name"),
     "no numbers": (in_sheet(b"<v>-5</v>", b"<v>1e</v>"), "the workbook is damaged"),
     "no XML": (in_sheet(b"<sheetData>", b"<sheetDat"), "the workbook is damaged"),

@@ -13,6 +13,7 @@ from asammdf import MDF, Signal
 from tethertest.errors import FileFormatError
 from tethertest.readers import identify, read_log
 from tethertest.readers.containers import mdf_blocks, rehearsal
+from tethertest.readers.formats import mdf
 
 T = np.arange(40) / 50.0
 F = 5.0 + np.sin(T)
@@ -156,10 +157,17 @@ def looped(kind, link):
 
 HOSTILE = {
     "records that are not there": (put(b"##CG", 80, "<Q", 10**12), "records of 16000000000000 bytes"),
+    "texts that are not there": (
+        lambda data: put(b"##CG", 88, "<H", 1)(put(b"##CG", 80, "<Q", 10**12)(data)),
+        "declares records of 4000000000000 bytes",
+    ),
     "fewer records than data": (put(b"##CG", 80, "<Q", 30), "records of 480 bytes and holds 640"),
     "a channel that is its own next": (looped(b"##CN", 0), "a list of its blocks leads back to itself"),
     "a channel in itself": (looped(b"##CN", 1), "a list of its blocks leads back to itself"),
     "a group that is its own next": (looped(b"##DG", 0), "a list of its blocks leads back to itself"),
+    "a channel outside of its record": (put(b"##CN", 92, "<I", 2**16, 1), "at byte 65536 of a record of 16"),
+    "a float of three bytes": (put(b"##CN", 96, "<I", 24, 1), "floating-point numbers of 24 bits"),
+    "a channel too wide": (put(b"##CN", 91, "<B", 1, 1), "lies at byte 8 of a record of 16"),
     "a block far away": (put(b"##DG", 24, "<Q", 2**40), "a block lies at byte 1099511627776"),
     "a block too long": (put(b"##CN", 8, "<Q", 2**62), "declares 4611686018427387904 bytes"),
     "a block of many links": (put(b"##CN", 16, "<Q", 2**40), "the block at byte"),
@@ -199,6 +207,28 @@ def test_hostile_blocks_of_version_3_are_refused(made, change, words, monkeypatc
     refused(path, words)
 
 
+def no_bits(version, number):
+    """Return a change that leaves a channel of whole numbers without bits."""
+    kind, bits, width, form = (b"##CN", 96, "<I", 90) if version >= "4" else (b"CN", 188, "<H", 190)
+    whole = put(kind, form, "<B", 0, number)
+    return lambda data: put(kind, bits, width, 0, number)(whole(data))
+
+
+NO_BITS = {
+    "time": (("4.10", no_bits("4.10", 0)), "their time has no bits in the records"),
+    "channel": (("4.10", no_bits("4.10", 1)), "channel 'F' has no bits in the records"),
+    "time of version 3": (("3.30", no_bits("3.30", 0)), "their time has no bits in the records"),
+    "channel of version 3": (("3.30", no_bits("3.30", 1)), "channel 'F' has no bits in the records"),
+}
+
+
+@pytest.mark.parametrize(("written", "words"), NO_BITS.values(), ids=NO_BITS)
+def test_what_has_no_bits_is_not_made_up(made, written, words):
+    """asammdf gives a time without bits a sample in each second, and a channel zeros."""
+    version, change = written
+    refused(made(version=version, change=change), words)
+
+
 @pytest.mark.parametrize("version", ["4.10", "3.30"])
 def test_a_cut_file_is_refused(made, version):
     data = made(version=version, compression=0).read_bytes()
@@ -213,6 +243,20 @@ def test_a_packed_block_that_says_it_is_huge_is_refused(made):
     refused(path, "unpacks to more than a log of its size holds")
 
 
+def test_a_packed_block_of_columns_without_width_is_refused(made, monkeypatch):
+    path = made(compression=2, change=put(b"##DZ", 24 + 4, "<I", 0))
+    monkeypatch.setattr(rehearsal, "_child", None)
+    refused(path, "turned by columns of no width")
+
+
+def test_what_asammdf_prints_is_no_answer(made, capsys, monkeypatch):
+    """It prints its lists to standard output where a channel cannot be selected: here its name is no text."""
+    path = made(change=put(b"##CN", 24 + 16, "<Q", 64, 1))
+    monkeypatch.setattr(mdf, "rehearse", lambda *_: None)
+    refused(path, "the MDF file is damaged or cut")
+    assert capsys.readouterr().out == ""
+
+
 def test_more_values_than_a_log_has_are_refused(made, monkeypatch):
     monkeypatch.setattr(mdf_blocks, "CELLS", 50)
     refused(made(), "the MDF file declares 80 values, expected at most 50")
@@ -222,3 +266,31 @@ def test_without_asammdf_the_error_says_what_to_install(made, monkeypatch):
     path = made()
     monkeypatch.setitem(sys.modules, "asammdf", None)
     refused(path, r"asammdf that reads it is not installed\n.*pip install 'tethertest\[mdf\]'")
+
+
+def test_records_of_two_groups_in_one_block_of_data(made):
+    """Loggers that write as the samples come put the number of the group before each record."""
+
+    def unsorted(data):
+        changed = bytearray(data)
+        groups, channels = [find(data, b"##DG", k) for k in (0, 1)], [find(data, b"##CG", k) for k in (0, 1)]
+        records = []
+        for group, listed, number in zip(groups, channels, (1, 2), strict=True):
+            place = struct.unpack_from("<Q", data, group + 40)[0]
+            length = struct.unpack_from("<Q", data, place + 8)[0]
+            body = data[place + 24 : place + length]
+            records += [bytes([number]) + body[row : row + 16] for row in range(0, len(body), 16)]
+            struct.pack_into("<Q", changed, listed + 72, number)
+        records.sort(key=lambda record: struct.unpack_from("<d", record, 1))
+        body = b"".join(records)
+        struct.pack_into("<Q", changed, groups[0] + 24, 0)
+        struct.pack_into("<Q", changed, channels[0] + 24, channels[1])
+        struct.pack_into("<Q", changed, groups[0] + 40, len(changed))
+        changed[groups[0] + 56] = 1
+        return bytes(changed) + struct.pack("<4s4xQQ", b"##DT", 24 + len(body), 0) + body
+
+    fast, slow = [Signal(F, T, name="F", unit="N")], [Signal(SLOW + 1.0, SLOW, name="G", unit="N")]
+    log = read_log(made(("fast", fast), ("slow", slow), change=unsorted))
+    np.testing.assert_array_equal(log.channels[0].values, F)
+    np.testing.assert_array_equal(log.channels[1].values, SLOW + 1.0)
+    np.testing.assert_array_equal(log.channels[1].time, SLOW)

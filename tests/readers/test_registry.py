@@ -6,6 +6,7 @@ import inspect
 import pkgutil
 import subprocess
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -112,7 +113,7 @@ def test_the_log_keeps_the_hash_of_the_file_on_disk_and_the_reason(write):
     path = write("time [s],F [N]\n0,1\n1,2\n", compression="gz")
     log = read_log(path)
     assert log.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
-    assert log.reason == "text that no format reader claims"
+    assert log.reason == "text that no format reader claims; it begins with 'time [s],F [N]'"
 
 
 def test_channels_are_read_only(write):
@@ -129,3 +130,37 @@ def test_heavy_packages_wait_until_a_log_is_read():
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize(
+    ("name", "keys"),
+    [
+        ("tdms", {"decimal": ","}),
+        ("tdms", {"encoding": "cp1252"}),
+        ("lvm", {"skip_rows": 3}),
+        ("lvm", {"rate": 100.0}),
+        ("catman", {"separator": ";"}),
+        ("toa5", {"skip_rows": 1}),
+        ("fbgs", {"separator": ";"}),
+    ],
+)
+def test_a_key_that_a_reader_would_pass_over_is_refused(settings, name, keys):
+    reader = next(reader for reader in READERS if name == reader.NAME)
+    (key,) = keys
+    with pytest.raises(FileFormatError, match=rf"gives {key}, which the reader of {name} logs does not use"):
+        registry.refuse_keys(Path("log.txt"), reader, settings(**keys))
+
+
+@pytest.mark.parametrize(
+    ("name", "keys"),
+    [
+        ("delimited", {"decimal": ",", "separator": ";", "skip_rows": 3, "date_order": "dmy"}),
+        ("lvm", {"decimal": ",", "separator": "tab", "date_order": "dmy", "encoding": "cp1252"}),
+        ("catman", {"decimal": ",", "date_order": "dmy", "rate": 50.0}),
+        ("tdms", {"time_zone": "+08:00", "units": {"F": "N"}}),
+        ("archive", {"decimal": ",", "table": "a.csv"}),
+    ],
+)
+def test_the_keys_that_a_reader_uses_are_not_refused(settings, name, keys):
+    reader = next(reader for reader in READERS if name == reader.NAME)
+    registry.refuse_keys(Path("log.txt"), reader, settings(**keys))

@@ -19,6 +19,7 @@ from tethertest.readers.containers import rehearsal
 #: a reader that never ends on "hang", dies on "die", refuses "bad", and is done with anything else
 READER = textwrap.dedent("""
     import json, os, sys, time
+    print(flush=True)
     for line in sys.stdin:
         name = os.path.basename(json.loads(line))
         if name == "hang":
@@ -63,6 +64,13 @@ def test_what_the_other_process_refuses_is_refused(reader, tmp_path):
         rehearsal.rehearse(tmp_path / "bad", reader)
     assert caught.value.remedy == "mend it"
     rehearsal.rehearse(tmp_path / "Größe ok", reader)
+
+
+def test_a_reader_that_does_not_start_is_told(tmp_path):
+    (tmp_path / "log").touch()
+    with pytest.raises(FileFormatError, match="did not start"):
+        rehearsal.rehearse(tmp_path / "log", "no_such_reader")
+    assert "no_such_reader" not in rehearsal._children
 
 
 def test_a_process_that_was_killed_from_outside_is_replaced(reader, tmp_path):

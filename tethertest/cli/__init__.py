@@ -26,6 +26,7 @@ BAD_INPUT = 2
 PROGRAM_FAULT = 3
 
 app = typer.Typer(
+    rich_markup_mode=None,  # help texts speak of [[log]] and units in brackets
     name="tethertest",
     help="Experiment-data analysis and similitude for ship-borne tethered UAVs.",
     no_args_is_help=True,

@@ -21,7 +21,7 @@ def print_log(log: dict[str, Any]) -> None:
         _print_refusal(log)
         return
     typer.echo(f"{log['path']}: {log['format']}")
-    typer.echo(f"  chosen because {log['reason']}")
+    typer.echo(f"  why this reader: {log['reason']}")
     if log.get("header_line") or log["encoding"]:
         typer.echo(f"  text: {', '.join(_text(log))}")
     start = log["start"]
@@ -48,7 +48,7 @@ def _print_refusal(log: dict[str, Any]) -> None:
     if log["remedy"]:
         typer.echo(f"  fix: {log['remedy']}", err=True)
     if log["format"]:
-        typer.echo(f"  read as {log['format']} because {log['reason']}", err=True)
+        typer.echo(f"  reader: {log['format']} ({log['reason']})", err=True)
 
 
 def _text(log: dict[str, Any]) -> list[str]:

@@ -20,10 +20,11 @@ class SchemaKind(StrEnum):
     PROTOTYPE = "prototype"
     SCENE = "scene"
     SOLVE = "solve"
+    INSPECT = "inspect"
 
 
 def schema(kind: Annotated[SchemaKind, typer.Argument(help="A kind of file, or a command.")]) -> None:
-    """Print the JSON schema of run, rig, prototype or scene files, or of what solve --json prints."""
+    """Print the JSON schema of run, rig, prototype or scene files, or of what a command's --json prints."""
     typer.echo(json.dumps(_schema(kind), indent=2, ensure_ascii=False))
 
 
@@ -32,6 +33,10 @@ def _schema(kind: SchemaKind) -> dict[str, Any]:
         from tethertest.pipeline.solve_summary import solve_schema
 
         return solve_schema()
+    if kind is SchemaKind.INSPECT:
+        from tethertest.pipeline.inspect_schema import inspect_schema
+
+        return inspect_schema()
     from tethertest.readers import json_schema
 
     return json_schema(cast("FileKind", kind.value))

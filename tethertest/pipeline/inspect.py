@@ -9,7 +9,7 @@ from typing import Any
 from tethertest.errors import TethertestError
 from tethertest.pipeline.inspect_flags import shown_flags
 from tethertest.pipeline.log_entry import entry_text
-from tethertest.pipeline.read_bare import read_bare, settings_of_a_run
+from tethertest.pipeline.read_bare import check_no_pipe, read_bare, settings_of_a_run
 from tethertest.pipeline.store_summary import describe_store
 from tethertest.pipeline.time_bases import time_bases
 from tethertest.readers import load_run, read_log
@@ -43,6 +43,7 @@ def inspect_path(path: Path, rigs: Path | None = None, words: Sequence[str] = ()
     TethertestError
         A bare log, a store or a run file cannot be read, or a setting is wrong.
     """
+    check_no_pipe(path)
     if words and (path.is_dir() or is_store(path)):
         raise settings_of_a_run(path)
     if is_store(path):
@@ -67,7 +68,7 @@ def inspected(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -
         A setting is wrong, whatever the file.
     """
     settings = given_settings(path, words)
-    if settings is not None and (path.is_dir() or is_store(path)):
+    if settings is not None and (path.is_dir() or (path.is_file() and is_store(path))):
         raise settings_of_a_run(path)
     try:
         return inspect_path(path, rigs, words)

@@ -39,6 +39,7 @@ def read_bare(path: Path, words: Sequence[str] = ()) -> RawLog:
         A setting is wrong, or the log cannot be read; what a setting would mend names ``--set``.
     """
     settings = given_settings(path, words)
+    check_no_pipe(path)
     try:
         log = read_log(path, settings)
     except FileFormatError as error:
@@ -66,6 +67,19 @@ def bare_error(error: FileFormatError, *, given: bool) -> TethertestError:
         word = _word(keys[0]) if len(keys) == 1 else "KEY=VALUE"
         remedy = f"{remedy} (or here: {SET} {word})"
     return FileFormatError(problem, remedy, path=error.path, line=error.line)
+
+
+def check_no_pipe(path: Path) -> None:
+    """Refuse what can be read only once: a log is read several times.
+
+    Raises
+    ------
+    FileFormatError
+        The path is a pipe, a socket or a device.
+    """
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        message = "found a pipe or a device, expected a file"
+        raise FileFormatError(message, "save the log as a file and name that", path=path)
 
 
 def settings_of_a_run(path: Path) -> TethertestError:

@@ -46,7 +46,7 @@ def _base(names: list[str], stamps: FloatArray) -> dict[str, Any]:
         found |= {"first": float(time.min()), "last": float(time.max())}
     if time.size < 2:
         flags = {"missing_time": missing, "duplicate_time": 0, "backward_time": 0, "gap": 0}
-        return {**found, "step": None, "uneven": 0, "flags": flags, "text": f"{time.size} stamps, no rate"}
+        return {**found, "step": None, "uneven": 0, "flags": flags, "text": _few(time.size)}
     seen = steps_of(time)
     # a row in the wrong place is no hole in the record
     ordered = np.unique(time) if seen.backward.any() else time
@@ -69,6 +69,10 @@ def _base(names: list[str], stamps: FloatArray) -> dict[str, Any]:
         },
         "text": _sentence(time, ordered, seen, holes, repeats, missing),
     }
+
+
+def _few(count: int) -> str:
+    return f"{count} stamp{'' if count == 1 else 's'}, no rate"
 
 
 def _uneven(step: FloatArray, usual: float) -> BoolArray:

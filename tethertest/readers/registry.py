@@ -75,6 +75,16 @@ _MAPPED: Final = {
     "fbgs": {"rate"},
     "catman": {"rate"},
 }
+#: reader -> keys of text logs that its format leaves no room for; readers of containers refuse theirs by name
+_SETTLED: Final = {
+    "tdms": {"encoding", "decimal", "separator", "date_order", "skip_rows"},
+    "lvm": {"skip_rows"},
+    "catman": {"separator", "skip_rows"},
+    "enlight-sensors": {"separator", "skip_rows"},
+    "enlight-peaks": {"separator", "skip_rows"},
+    "fbgs": {"separator", "skip_rows"},
+    "toa5": {"separator", "skip_rows"},
+}
 #: files that people have at hand and no reader here can use
 _FOREIGN: Final = (
     (b"%PDF", "a PDF document"),
@@ -158,8 +168,17 @@ def refuse_keys(path: Path, reader: Reader, settings: Log | None) -> None:
         "time": settings.time is not None,
         "rate": settings.rate is not None,
     }
+    unused = given.keys() - _MAPPED.get(reader.NAME, set())
+    unused |= _SETTLED.get(reader.NAME, set())
+    given |= {
+        "encoding": settings.encoding is not None,
+        "decimal": settings.decimal is not None,
+        "separator": settings.separator is not None,
+        "date_order": settings.date_order is not None,
+        "skip_rows": settings.skip_rows != 0,
+    }
     for key in sorted(key for key, is_given in given.items() if is_given):
-        if key not in _MAPPED.get(reader.NAME, set()):
+        if key in unused:
             message = f"run.toml gives {key}, which the reader of {reader.NAME} logs does not use"
             raise FileFormatError(message, f"remove {key} for this log", path=path)
 

@@ -65,6 +65,7 @@ def test_words_give_what_the_same_keys_give_in_run_toml(words, toml):
         (["rate=0 Hz"], "--set rate: found '0 Hz', expected more than 0 Hz", "correct"),
         (["skip_rows=two"], "--set skip_rows: found 'two', expected a whole number", "correct"),
         (["skip_rows=-1"], "--set skip_rows: found -1, expected 0 or more rows", "count the rows"),
+        (["skip_rows=99999999999999999999"], "--set skip_rows: found 99999999999999999999", "count the rows"),
         (["columns=[1"], "--set columns: found '[1', which is not written as in TOML", '["t", "F_top"]'),
         (["decimal=.", "decimal=,"], "--set decimal: found ',' after '.'", "each key once"),
         (["clock=daq"], "--set clock: a log that is read by itself has none", "write clock into run.toml"),
@@ -94,7 +95,9 @@ def test_encodings_of_loggers_are_known(encoding):
     assert not [*setting_problems((), Log("a", "daq", encoding=encoding))]
 
 
-@pytest.mark.parametrize("encoding", ["", "rot13", "hex", "a\0b", "undefined"])
+@pytest.mark.parametrize(
+    "encoding", ["", "rot13", "hex", "a\0b", "undefined", "unicode_escape", "idna", "punycode"]
+)
 def test_what_turns_no_bytes_into_text_is_no_encoding(encoding):
     (problem,) = setting_problems(("log", 0), Log("a", "daq", encoding=encoding))
     assert problem.key == ("log", 0, "encoding")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from collections.abc import Iterator
 from zoneinfo import ZoneInfo
@@ -15,6 +16,10 @@ from tethertest.readers.timeunits import is_time_unit
 from tethertest.records.run import Log
 from tethertest.units import channel_scale
 
+#: rows above the names of the columns; the longest header known has 104
+MOST_SKIPPED = 100_000
+#: codecs that spell text in other text: no logger writes them, and some warn or fail on plain text
+_SPELLED = {"idna", "punycode", "raw-unicode-escape", "unicode-escape"}
 #: signs that numbers, names and quoted cells have inside
 _IN_CELLS = "\"'.+-_#"
 _NAMED_SEPARATORS = ", ".join(sorted(name for name in SPELLINGS if name.isalpha()))
@@ -31,8 +36,8 @@ def setting_problems(key: KeyPath, log: Log) -> Iterator[Problem]:
     log : Log
         Its `file`, `clock` and `channels` are not looked at: these need the run and its rig.
     """
-    if log.skip_rows < 0:
-        text = f"found {log.skip_rows}, expected 0 or more rows"
+    if not 0 <= log.skip_rows <= MOST_SKIPPED:
+        text = f"found {log.skip_rows}, expected 0 or more rows, and at most {MOST_SKIPPED}"
         yield Problem((*key, "skip_rows"), text, "count the rows to leave out from the top")
     if log.encoding is not None and not _is_encoding(log.encoding):
         text = f"found {log.encoding!r}, which is no known encoding"
@@ -58,6 +63,8 @@ def setting_problems(key: KeyPath, log: Log) -> Iterator[Problem]:
 def _is_encoding(name: str) -> bool:
     """Return whether bytes become text by this name: some codecs turn text into text, or bytes into bytes."""
     try:
+        if codecs.lookup(name).name.replace("_", "-") in _SPELLED:
+            return False
         bytes(4).decode(name)  # as many bytes as the widest character has; none at all never fails
     except (LookupError, ValueError):  # a NUL in the name is a ValueError
         return False

@@ -110,7 +110,7 @@ def _add_array(
 
 
 def _reshaped(item: Array, sides: tuple[int, ...]) -> Numbers:
-    return item.load().reshape(sides, order="F")
+    return item.load().reshape(sides)  # only sides of one are lost
 
 
 def _texts(fields: Mapping[str, Item], keys: tuple[str, ...], sides: tuple[int, ...]) -> tuple[str, ...]:

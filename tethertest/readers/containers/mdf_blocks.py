@@ -24,7 +24,8 @@ from tethertest.readers.containers.limits import (
 
 _HEAD = struct.Struct("<4s4xQQ")
 _GROUP = struct.Struct("<QQHH4xII")
-_PACKED = struct.Struct("<2s2xIQQ")
+_CHANNEL = struct.Struct("<BxBBII")
+_PACKED = struct.Struct("<2sBxIQQ")
 _FIRST: Final = 64
 #: bytes of a group of channels in version 3.1, the smallest block that is read here but for a group of data
 _SMALLEST: Final = 26
@@ -37,6 +38,10 @@ _LISTED: Final = {
 _PLAIN_DATA: Final = {b"##DT", b"##DV", b"##DI", b"##SD", b"##RD", b"##RV", b"##RI"}
 #: a group whose records have a length each
 _IS_VARIABLE: Final = 1
+#: types of channels that are computed from the number of the record, and take no bits of it
+VIRTUAL: Final = {3, 6}
+#: data types of floating-point numbers, in either order of their bytes
+_FLOATS: Final = {4, 5}
 #: declarations that make an XML text grow without end
 _DECLARATIONS: Final = (b"<!DOCTYPE", b"<!ENTITY")
 
@@ -123,12 +128,26 @@ def _check_group(path: Path, data: bytes, blocks: dict[int, _Block], group: _Blo
             is_exact = False
         else:
             declared += cycles * (identifier + size + invalid)
-            cells += cycles * sum(1 for _ in _chain(blocks, channels.links[1]))
+            listed = list(_chain(blocks, channels.links[1]))
+            cells += cycles * len(listed)
+            for channel in listed:
+                _check_channel(path, data, channel, size)
     here = _data_size(path, data, blocks, blocks.get(group.links[2]))
     if declared > here or (is_exact and declared != here):
         problem = f"a group declares records of {declared} bytes and holds {here}: it is cut or not finalised"
         raise _damaged(path, problem)
     return cells
+
+
+def _check_channel(path: Path, data: bytes, channel: _Block, size: int) -> None:
+    """Refuse a channel that lies outside of its record."""
+    if channel.kind != b"##CN" or channel.end - channel.start < _CHANNEL.size:
+        raise _damaged(path, "a channel is none")
+    kind, form, bit, byte, bits = _CHANNEL.unpack_from(data, channel.start)
+    if form in _FLOATS and bits not in {16, 32, 64}:
+        raise _damaged(path, f"a channel holds floating-point numbers of {bits} bits")
+    if kind not in VIRTUAL and byte + -(-(bit + bits) // 8) > size:
+        raise _damaged(path, f"a channel lies at byte {byte} of a record of {size}")
 
 
 def _chain(blocks: dict[int, _Block], place: int) -> Iterator[_Block]:
@@ -147,7 +166,9 @@ def _data_size(path: Path, data: bytes, blocks: dict[int, _Block], block: _Block
     if block.kind == b"##DZ":
         if block.end - block.start < _PACKED.size:
             raise _damaged(path, "a packed block has no header")
-        _, _, size, packed = _PACKED.unpack_from(data, block.start)
+        _, method, width, size, packed = _PACKED.unpack_from(data, block.start)
+        if method % 2 and not width:  # asammdf's compiled part would divide by it
+            raise _damaged(path, "a packed block is turned by columns of no width")
         if packed > block.end - block.start - _PACKED.size:
             raise _damaged(path, f"a packed block declares {packed} bytes and is cut")
         return int(size)

@@ -17,8 +17,10 @@ from typing import Final
 
 from tethertest.errors import FileFormatError
 
-#: what a small file may take: the first one also waits for the libraries to be loaded [s]
+#: what a small file may take [s]
 _PATIENCE: Final = 30.0
+#: what a busy machine may take to load the libraries [s]
+_START: Final = 120.0
 #: slowest reading of a sound file: deflated, from a network drive [bytes/s]
 _SLOWEST: Final = 2e6
 
@@ -35,34 +37,26 @@ def rehearse(path: Path, module: str) -> None:
         The file.
     module : str
         Module that, run as a script, reads each path given to it as a line of JSON and answers each by a line
-        of JSON: an empty list, or what is wrong with the file and what to do.
+        of JSON: an empty list, or what is wrong with the file and what to do. It begins with an empty line.
 
     Raises
     ------
     FileFormatError
-        The other process refused the file, died of it, or was not done in a time that a sound file of this
-        size needs.
+        The other process did not start, refused the file, died of it, or was not done in a time that a sound
+        file of this size needs.
     """
     if not sys.executable:  # embedded in another program: there is no interpreter to start
         return
     limit = _PATIENCE + path.stat().st_size / _SLOWEST
     with _busy:
         child = _child(module)
-        assert child.stdin is not None
-        assert child.stdout is not None
-        overdue = threading.Timer(limit, child.kill)
-        overdue.start()
-        try:
-            child.stdin.write(json.dumps(str(path.absolute())) + "\n")
-            child.stdin.flush()
-            answer = json.loads(child.stdout.readline())
-        except (OSError, ValueError):  # it is gone, and its last line is none
-            answer = None
-        finally:
-            was_in_time = overdue.is_alive()
-            overdue.cancel()
-        if answer is None:
+        if child is None:
+            message = "the process that tries the file first did not start"
+            raise FileFormatError(message, "free memory or processes, and try again", path=path)
+        line, was_in_time = _said(child, json.dumps(str(path.absolute())) + "\n", limit)
+        if not line:
             _end(module)
+    answer = json.loads(line) if line else None
     if answer is None:
         how = "the library that reads it died of it"
         if not was_in_time:
@@ -76,20 +70,41 @@ def rehearse(path: Path, module: str) -> None:
         raise FileFormatError(problem, remedy, path=path)
 
 
-def _child(module: str) -> subprocess.Popen[str]:
+def _child(module: str) -> subprocess.Popen[str] | None:
     child = _children.get(module)
-    if child is None or child.poll() is not None:
-        if child is not None:
-            _end(module)
-        child = subprocess.Popen(
-            [sys.executable, "-m", module],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
-        )
-        _children[module] = child
+    if child is not None and child.poll() is None:
+        return child
+    if child is not None:
+        _end(module)
+    child = _children[module] = subprocess.Popen(
+        [sys.executable, "-m", module],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
+    if not _said(child, "", _START)[0]:
+        _end(module)
+        return None
     return child
+
+
+def _said(child: subprocess.Popen[str], question: str, limit: float) -> tuple[str, bool]:
+    """Return the next line, "" where the process has ended, and whether that was not for want of time."""
+    assert child.stdin is not None
+    assert child.stdout is not None
+    overdue = threading.Timer(limit, child.kill)
+    overdue.start()
+    try:
+        child.stdin.write(question)
+        child.stdin.flush()
+        line = child.stdout.readline()
+    except OSError:
+        line = ""
+    finally:
+        was_in_time = overdue.is_alive()
+        overdue.cancel()
+    return (line if line.endswith("\n") else ""), was_in_time
 
 
 def _end(module: str) -> None:

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from tethertest.readers.containers.sheet import Cell, Dated, Sheet, Wrong
-from tethertest.readers.containers.table import Column, Table
+from tethertest.readers.containers.table import Column, Table, listed
 from tethertest.readers.containers.workbook import column_name
 from tethertest.readers.text.cells import bare_unit, is_units_row, split_unit
 from tethertest.readers.text.stamps import stamp_kind
 from tethertest.readers.text.table import MISSING_TOKENS, is_number
+from tethertest.readers.timeunits import CALENDARS, SECONDS, is_time_name
 
 #: rows at the end by which a column is known to hold numbers or stamps
 _SAMPLE = 100
 _TEXT = "text"
+_BOOLEAN = "true or false"
+_APART = "move each time with its channels to a sheet of its own, and name one as table"
+_CONVERT = "numbers stored as text are no numbers: convert them in Excel (Data, Text to Columns)"
 
 
 def first_row(sheet: Sheet, skip: int = 0) -> int | None:
@@ -66,8 +71,43 @@ def table_of_sheet(sheet: Sheet, first: int, skip: int = 0) -> Table:
         found.append(_column(sheet, rows, column, name, unit))
     numbers = tuple(row + 1 for row in rows)
     place = f"sheet {sheet.name!r} row"
+    _refuse_second_table(sheet, first, columns, found)
     return Table(
         sheet.path, tuple(found), named=bool(names), rows=numbers, place=place, remarks=tuple(remarks)
+    )
+
+
+def _refuse_second_table(sheet: Sheet, first: int, columns: list[int], found: list[Column]) -> None:
+    """Refuse two tables beside each other, with a blank column between them and a time in each."""
+    starts = [0, *(k for k in range(1, len(columns)) if columns[k] > columns[k - 1] + 1), len(columns)]
+    blocks = [found[start:end] for start, end in pairwise(starts)]
+    timed = [block for block in blocks if any(_is_time(column) for column in block)]
+    if len(timed) > 1:
+        names = listed(next(column.name for column in block if _is_time(column)) for block in timed)
+        problem = f"found tables beside each other, each with a time: {names}"
+        raise sheet.error(problem, _APART, first)
+    names_of_times = [column.name for column in found if _is_time(column)]
+    twice = next((name for name in names_of_times if names_of_times.count(name) > 1), None)
+    if twice is not None:
+        problem = f"found two columns of time, both called {twice!r}"
+        raise sheet.error(problem, _APART, first)
+    rising = [column.name for column in found if column.unit.lower() in SECONDS and _is_rising(column)]
+    if len(rising) > 1:
+        problem = f"found columns in units of time that all increase steadily: {listed(rising)}"
+        raise sheet.error(problem, _APART, first)
+
+
+def _is_rising(column: Column) -> bool:
+    values = np.asarray(column.cells)
+    if values.dtype.kind != "f":
+        return False
+    filled = values[np.isfinite(values)]
+    return filled.size > 2 and bool(np.all(np.diff(filled) > 0))
+
+
+def _is_time(column: Column) -> bool:
+    return (
+        is_time_name(column.name, column.unit) or column.unit.lower() in SECONDS or column.unit in CALENDARS
     )
 
 
@@ -88,9 +128,11 @@ def _is_datum(cell: Cell) -> bool:
 
 def _is_data(sheet: Sheet, row: int, numeric: Sequence[int]) -> bool:
     cells = [_at(sheet, row, column) for column in numeric]
-    data = sum(map(_is_datum, cells))
-    return data * 2 >= len(cells) and all(
-        cell is None or _is_datum(cell) or _is_missing(cell) for cell in cells
+    filled = [cell for cell in cells if cell is not None]
+    return (
+        len(filled) * 2 >= len(cells)
+        and any(map(_is_datum, filled))
+        and all(_is_datum(cell) or _is_missing(cell) for cell in filled)
     )
 
 
@@ -147,6 +189,7 @@ def _column(sheet: Sheet, rows: range, column: int, name: str, unit: str) -> Col
     cells = [_at(sheet, row, column) for row in rows]
     kinds = {_kind(cell) for cell in cells if cell is not None and not _is_missing(cell)}
     if kinds == {_TEXT}:
+        _refuse_numbers_as_text(sheet, rows, column, name, cells)
         return Column(
             name, unit, [cell if isinstance(cell, str) and not _is_missing(cell) else "" for cell in cells]
         )
@@ -165,7 +208,10 @@ def _column(sheet: Sheet, rows: range, column: int, name: str, unit: str) -> Col
             lost[cell] += 1
     parts = [f"{count} values {word!r}" for word, count in lost.items()]
     remark = f"column {name!r}: {', '.join(parts)} read as missing" if parts else ""
-    return Column(name, kinds.pop() or unit if kinds else unit, values, remark)
+    if kinds == {_BOOLEAN}:
+        remark = f"column {name!r} holds true and false, read as 1 and 0"
+    shown_as = kinds - {_BOOLEAN, ""}
+    return Column(name, shown_as.pop() if shown_as else unit, values, remark)
 
 
 def _kind(cell: Cell) -> str:
@@ -173,8 +219,19 @@ def _kind(cell: Cell) -> str:
     if isinstance(cell, Dated):
         return cell.unit
     if isinstance(cell, bool):
-        return "true or false"
+        return _BOOLEAN
     return _TEXT if isinstance(cell, str) else ""
+
+
+def _is_written_number(text: str) -> bool:
+    return is_number(text, ".") or is_number(text, ",")
+
+
+def _refuse_numbers_as_text(sheet: Sheet, rows: range, column: int, name: str, cells: Sequence[Cell]) -> None:
+    filled = [cell for cell in cells if isinstance(cell, str) and not _is_missing(cell)]
+    if all(map(_is_written_number, filled)):
+        problem = f"{name!r} holds numbers stored as text"
+        raise sheet.error(problem, _CONVERT, rows[0], column)
 
 
 def _refuse_mixed(sheet: Sheet, rows: range, column: int, name: str, cells: Sequence[Cell]) -> None:
@@ -188,9 +245,9 @@ def _refuse_mixed(sheet: Sheet, rows: range, column: int, name: str, cells: Sequ
     )
     cell = cells[odd]
     shown = "a date" if isinstance(cell, Dated) else repr(cell)[:42]
-    expected = {"": "a number", _TEXT: "text"}.get(usual, "a date or time")
+    expected = {"": "a number", _TEXT: "text", _BOOLEAN: _BOOLEAN}.get(usual, "a date or time")
     remedy = "correct the cell, or format the column as one kind"
-    if isinstance(cell, str) and (is_number(cell, ".") or is_number(cell, ",")):
-        remedy = "it is a number stored as text: convert it to a number in Excel"
+    if isinstance(cell, str) and _is_written_number(cell):
+        remedy = _CONVERT
     problem = f"found {shown} in {name!r}, expected {expected}"
     raise sheet.error(problem, remedy, rows[odd], column)

@@ -18,6 +18,8 @@ from tethertest.readers.containers.limits import COMPRESSION_RATIO, DECOMPRESSED
 from tethertest.readers.containers.zips import ZIP_MAGIC, is_workbook, member_stream, opened_zip
 
 _PREFIX: Final = rb"(?:\w+:)?"
+#: namespaces of the strict form of the format
+_STRICT: Final = b"http://purl.oclc.org/ooxml/spreadsheetml"
 #: declarations that can make an XML text grow without end, or lead to other files
 _DECLARATION = re.compile(rb"<!(?:DOCTYPE|ENTITY)", re.IGNORECASE)
 _ENCODING = re.compile(rb"<\?xml[^>]*?encoding=[\"']([^\"']*)")
@@ -184,6 +186,9 @@ def _parts(path: Path) -> dict[str, bytes]:
                 raise FileFormatError(message, "save the sheet of the log alone", path=path)
             _check_text(path, info.filename, text)
             parts[info.filename] = text
+    if _STRICT in parts.get("xl/workbook.xml", b""):
+        message = "found a workbook in the form 'Strict Open XML', which openpyxl does not read"
+        raise FileFormatError(message, "save it as an ordinary Excel workbook (.xlsx)", path=path)
     if "xl/workbook.bin" in names:
         message = "found a binary Excel workbook (.xlsb)"
         raise FileFormatError(message, "save it as .xlsx, or the sheet as CSV (UTF-8)", path=path)

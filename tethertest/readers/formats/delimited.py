@@ -16,11 +16,17 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
 
 NAME = "delimited"
+#: characters of the first line that a person is shown
+_SHOWN = 60
 
 
 def sniff(head: Head) -> str | None:
     """Claim any text; the registry asks this reader only when no format reader claims the file."""
-    return "text that no format reader claims" if head.lines else None
+    if not head.lines:
+        return None
+    first = next((line.strip() for line in head.lines if line.strip()), "")
+    shown = first if len(first) <= _SHOWN else f"{first[:_SHOWN]}..."
+    return f"text that no format reader claims; it begins with {shown!r}"
 
 
 def read(path: Path, settings: Log | None = None) -> RawLog:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import json
 import sys
 from collections.abc import Callable
@@ -55,8 +56,11 @@ def bound_memory(path: Path) -> None:
     resource.setrlimit(resource.RLIMIT_DATA, (bound if most < 0 else min(bound, most), most))
 
 
-def main(answer: Callable[[Path], list[str]] = trouble) -> None:
-    """Answer each line of the input."""
+def main(answer: Callable[[Path], list[str]] = trouble, library: str = "h5py") -> None:
+    """Load the library, say so by an empty line, and answer each line of the input."""
+    with contextlib.suppress(ImportError):  # the first process tells of it
+        importlib.import_module(library)
+    print(flush=True)  # noqa: T201
     for line in sys.stdin:
         path = Path(json.loads(line))
         bound_memory(path)

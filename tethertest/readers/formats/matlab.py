@@ -23,6 +23,8 @@ _HEADER_BYTES: Final = 128
 #: version and mark of the byte order at the end of the header
 _LEVEL_5: Final = {b"\x00\x01IM", b"\x01\x00MI"}
 _LEVEL_73: Final = {b"\x00\x02IM", b"\x02\x00MI"}
+#: how the header begins where it is not whole or of another version
+_TITLE: Final = b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file"
 _OCTAVE: Final = "# Created by Octave"
 _REHEARSAL: Final = "tethertest.readers.formats.matlab_rehearsal"
 _SAVE: Final = "save it with: save('log.mat', ..., '-v7')"
@@ -34,6 +36,8 @@ def sniff(head: Head) -> str | None:
         return "the header is that of a MATLAB file (version 5 to 7)"
     if head.data[124:128] in _LEVEL_73:
         return "the header is that of a MATLAB file of version 7.3"
+    if head.data.startswith(_TITLE):
+        return "the first bytes are those of a MATLAB file"
     if head.lines and head.lines[0].startswith(_OCTAVE):
         return "the first line is that of an Octave file"
     return "the first bytes are those of a MATLAB file of version 4" if _is_level_4(head.data) else None
@@ -68,6 +72,9 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
             table, rest = table_of(tree_of(path, mat73.variables(path, file)), settings)
         return log_of(NAME, table, rest)
     data = read_bytes(path)
+    if version not in _LEVEL_5 and data.startswith(_TITLE):
+        message = "the MATLAB file is damaged or cut: its header is not whole"
+        raise FileFormatError(message, "copy it again, or save it again from MATLAB", path=path)
     if version not in _LEVEL_5:
         what = "Octave's text format" if data.startswith(_OCTAVE.encode()) else "MATLAB's format of version 4"
         message = f"found {what}, which is not read"

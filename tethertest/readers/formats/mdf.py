@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime as dt
 import io
 import logging
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
@@ -73,7 +73,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     )
 
 
-@contextmanager
+@contextlib.contextmanager
 def opened(path: Path, *, is_rehearsed: bool) -> Iterator[Any]:
     """Open an MDF file whose blocks are sound; another process reads it first, unless this is it.
 
@@ -94,7 +94,8 @@ def opened(path: Path, *, is_rehearsed: bool) -> Iterator[Any]:
         rehearse(path, _REHEARSAL)
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # what it would print is in our own message
     try:
-        with warnings.catch_warnings():
+        # it prints what it makes of a damaged file, among the answers of this program
+        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
             warnings.simplefilter("ignore")
             with MDF(io.BytesIO(data)) as file:
                 yield file

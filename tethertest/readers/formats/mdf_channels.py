@@ -11,6 +11,7 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names
+from tethertest.readers.containers.mdf_blocks import VIRTUAL
 from tethertest.readers.containers.table import listed, toml_text
 from tethertest.readers.timeunits import SECONDS
 from tethertest.records.arrays import FloatArray, frozen
@@ -88,6 +89,8 @@ def _groups(file: Any) -> list[_Group]:
             trouble = "their time is in another group, a layout that is not read"
         elif master is None or getattr(group.channels[master], "sync_type", _TIME) != _TIME:
             trouble = "the group has no time"
+        elif _is_nothing(group.channels[master]) and not getattr(group.channels[master], "sampling_rate", 0):
+            trouble = "their time has no bits in the records"  # asammdf would count it in seconds
         elif _time_unit(group.channels[master]) not in SECONDS:
             trouble = f"their time has the unit {group.channels[master].unit[:20]!r}"
         elif not group.channel_group.cycles_nr:
@@ -115,6 +118,8 @@ def _read(file: Any, group: _Group, remarks: list[str]) -> list[RawChannel]:
         channel = source.channels[index]
         if _has_formula(channel.conversion, _FORMULA[not _is_old(source)]):
             remarks.append(f"channel {channel.name!r} has a formula as conversion and is left out")
+        elif _is_nothing(channel):
+            remarks.append(f"channel {channel.name!r} has no bits in the records and is left out")
         else:
             kept.append(index)
     signals = file.select([(None, group.number, index) for index in kept], copy_master=False) if kept else []
@@ -136,6 +141,11 @@ def _read(file: Any, group: _Group, remarks: list[str]) -> list[RawChannel]:
             remarks.append(f"channel {signal.name!r}: {count} values marked as invalid read as missing")
         found.append(raw_channel(signal.name, str(signal.unit or "").strip(), time, values))
     return found
+
+
+def _is_nothing(channel: Any) -> bool:
+    """Return whether a channel takes no bits of a record and is not one that is computed from its number."""
+    return channel.bit_count == 0 and channel.channel_type not in VIRTUAL
 
 
 def _time_unit(channel: Any) -> str:

@@ -29,4 +29,4 @@ def trouble(path: Path) -> list[str]:
 
 
 if __name__ == "__main__":
-    main(trouble)
+    main(trouble, "asammdf")

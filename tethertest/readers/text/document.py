@@ -107,7 +107,7 @@ def read_document(path: Path, encoding: str | None = None) -> Document:
             raise nul_bytes(path, data.count(b"\n", 0, position) + 1)
         message = "found control bytes in a text log: the file is binary"
         raise FileFormatError(message, "export it from the logger as text", path=path)
-    if found == "ascii" or (found in {"utf-8", "utf-8-sig"} and decodes(data, "utf-8")):
+    if (found == "ascii" and data.isascii()) or (found in {"utf-8", "utf-8-sig"} and decodes(data, "utf-8")):
         body = data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
     else:
         body = decode(path, data, found).replace("\r\n", "\n").encode()

@@ -79,10 +79,12 @@ def open_table(path: Path, settings: Log | None) -> TableLog:
     """
     text = open_text(path, settings.encoding if settings is not None else None)
     layout = find_layout(text, settings)
-    names, renamed = unique_names(layout.names)
+    raw_names = layout.names
+    names, renamed = unique_names(raw_names)
     layout = replace(layout, names=names)
     zone = time_zone_of(settings.time_zone if settings is not None else None, path)
     chosen = find_time(layout, path, settings)
+    _refuse_two_tables(path, layout, raw_names, {*chosen.stamps, chosen.counter})
     counter = None
     if chosen.counter is not None:
         counter = read_counter(layout, chosen.counter, path, settings, zone)
@@ -117,6 +119,19 @@ def open_table(path: Path, settings: Log | None) -> TableLog:
         remarks_before=(*no_header, *renamed, *settled.remarks),
         remarks_after=unused,
     )
+
+
+def _refuse_two_tables(path: Path, layout: Layout, names: tuple[str, ...], time: set[int | None]) -> None:
+    """Refuse a second column of the time's name: what stands behind it has a time of its own."""
+    for column in sorted(column for column in time if column is not None):
+        again = [other + 1 for other, name in enumerate(names) if name == names[column] and other != column]
+        if again:
+            message = (
+                f"the name {names[column]!r} of the time in column {column + 1} also stands over column "
+            )
+            message += f"{', '.join(map(str, again))}: two tables side by side"
+            remedy = "export each table by itself, or name the columns by columns and skip_rows in run.toml"
+            raise FileFormatError(message, remedy, path=path, line=layout.header_line)
 
 
 def _channels(layout: Layout, used: set[int | None]) -> tuple[tuple[int, ...], tuple[str, ...]]:

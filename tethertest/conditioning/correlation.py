@@ -2,160 +2,145 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import reduce
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from tethertest.records.arrays import BoolArray, FloatArray
+from tethertest.conditioning.alignment import Comparison, IntegerArray, Pair, levels
+from tethertest.conditioning.uniform import Signal
+from tethertest.records.arrays import FloatArray
 
-IntegerArray: TypeAlias = npt.NDArray[np.int64]
+ComplexArray: TypeAlias = npt.NDArray[np.complex128]
 
-#: offsets are tried on this grid [s]: a tenth of a hertz of 15 Hz ringing turns by 0.05 rad in it
-GRID = 1e-3
+#: offsets are tried this fraction of the shortest period apart, but no finer and no coarser than this [s]
+GRID_SHARE, FINEST, COARSEST = 0.06, 2e-3, 2e-2
 #: clocks of one run are believed to differ by at most this [s]
 SEARCH = 8.0
+#: and offsets are tried this much farther, as rivals: a cycle of the slowest drive [s]
+RIVALS = 10.0
 #: the gain between the two signals lies between these, else they are not the same thing
 SMALLEST_GAIN, LARGEST_GAIN = 0.4, 2.5
-#: at least this share of the samples must have a partner in the reference's record
+#: at least this share of the samples must have a partner in the other record
 OVERLAP = 0.6
 #: another offset at least this far from the best is another candidate [s]
 APART = 0.02
-#: once with all spans alike, once with spans weighted by how well they fit
-PASSES = 2
 #: a mean square below this is rounding [N^2]
 SHARPEST = 1e-12
-#: a candidate is out when its misfit exceeds the best by this much, in units of the residual's variance (5
-#: sigma)
-DECISIVE = 25.0
-#: but never when it explains as much of the signal but for this share: filters' ends and drift weigh that
-#: much
-SAME_SHARE = 0.01
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scan:
-    """The fit at every offset tried."""
+    """The fit at every offset tried, each with the best of the drifts tried."""
 
     lag: FloatArray  #: offsets [s]
-    gain: FloatArray  #: of the reference; at offsets where it is not believable the misfit is infinite
+    misfit: FloatArray  #: mean square of what is left; infinite where the gain is not believable
     explained: FloatArray  #: fraction of the signal's energy
-    misfit: FloatArray  #: mean square of what is left
+    drift: FloatArray
+
+    def or_better(self, other: Scan) -> Scan:
+        """Return whichever fits better, offset by offset."""
+        better = other.misfit < self.misfit
+        return Scan(
+            np.where(better, other.lag, self.lag),
+            np.where(better, other.misfit, self.misfit),
+            np.where(better, other.explained, self.explained),
+            np.where(better, other.drift, self.drift),
+        )
+
+    def candidates(self, most: int) -> list[tuple[float, float]]:
+        """Return offset and drift of the best local minima of the misfit, the best first."""
+        padded = np.concatenate(([np.inf], self.misfit, [np.inf]))
+        least = (padded[1:-1] <= padded[:-2]) & (padded[1:-1] < padded[2:]) & np.isfinite(self.misfit)
+        places = np.flatnonzero(least)
+        places = places[np.argsort(self.misfit[places], kind="stable")]
+        chosen: list[int] = []
+        for place in places:
+            if all(abs(self.lag[place] - self.lag[other]) > APART for other in chosen):
+                chosen.append(int(place))
+            if len(chosen) == most:
+                break
+        return [(float(self.lag[place]), float(self.drift[place])) for place in chosen]
 
 
-@dataclass(frozen=True, slots=True)
-class Coarse:
-    """The best offset of a coarse search, and what else would fit."""
-
-    offset: float  #: [s], clock minus reference
-    explained: float  #: fraction of the signal's energy that the reference explains
-    rivals: tuple[float, ...]  #: other offsets that the data do not exclude [s]
-
-
-def best_offset(
-    reference_time: FloatArray,
-    reference: FloatArray,
-    time: FloatArray,
-    values: FloatArray,
-    use: BoolArray,
-    group: IntegerArray,
-) -> Coarse | None:
-    """Return the offset at which a clock's signal fits the reference best, with a free gain.
-
-    Parameters
-    ----------
-    reference_time, reference : ndarray
-        (n,) stamps of the reference clock [s] and its high-passed signal.
-    time, values : ndarray
-        (m,) stamps of the other clock [s] and its high-passed signal.
-    use : ndarray
-        (m,) True for the samples that are compared.
-    group : ndarray
-        (m,) Number of the span that a sample belongs to: a span that fits badly at the best offset, because
-        something else shakes the rig there, counts less when the offsets are compared once more.
-
-    Returns
-    -------
-    Coarse or None
-        None where no offset within `SEARCH` gives a believable gain.
-    """
-    weight = use.astype(np.float64)
-    for _ in range(PASSES):
-        scan = _scan(reference_time, reference, time, values, weight)
-        best = int(np.argmin(scan.misfit))
-        if not np.isfinite(scan.misfit[best]):
-            return None
-        offset = float(scan.lag[best])
-        paired = use & (time - offset >= reference_time[0]) & (time - offset <= reference_time[-1])
-        there = np.interp(time[paired] - offset, reference_time, reference)
-        residual = values[paired] - scan.gain[best] * there
-        previous, weight = weight, np.zeros(time.size)
-        weight[paired] = _span_weights(group[paired], values[paired], there)
-    white = residual * np.sqrt(previous[paired])
-    excess = (scan.misfit / max(float(scan.misfit[best]), SHARPEST) - 1.0) * effective_count(white)
-    misfit = scan.misfit
-    peak = np.concatenate(([False], (misfit[1:-1] < misfit[:-2]) & (misfit[1:-1] <= misfit[2:]), [False]))
-    as_good = (excess < DECISIVE) | (scan.explained > scan.explained[best] - SAME_SHARE)
-    rival = peak & as_good & (np.abs(scan.lag - offset) > APART)
-    return Coarse(offset, float(scan.explained[best]), tuple(float(item) for item in scan.lag[rival]))
-
-
-def _span_weights(group: IntegerArray, values: FloatArray, there: FloatArray) -> FloatArray:
-    """Return a weight per sample: the inverse variance of its span's misfit, each span with its own gain."""
-    count = np.maximum(np.bincount(group), 1)
-    energy = np.maximum(np.bincount(group, there**2), SHARPEST)
-    product = np.bincount(group, values * there)
-    scatter = (np.bincount(group, values**2) - product**2 / energy) / count
-    scatter = np.maximum(scatter, SHARPEST)
-    return np.asarray(np.median(scatter[np.unique(group)]) / scatter[group], dtype=np.float64)
-
-
-def _scan(
-    reference_time: FloatArray,
-    reference: FloatArray,
-    time: FloatArray,
-    values: FloatArray,
-    weight: FloatArray,
+def scanned(
+    comparison: Comparison, pair: Pair, believable_drift: float, slowest: float, cutoff: float
 ) -> Scan:
-    """Fit the gain at every offset of the grid, by correlation."""
-    start = min(float(reference_time[0]), float(time[0])) - SEARCH
-    stop = max(float(reference_time[-1]), float(time[-1])) + SEARCH
-    count = int((stop - start) / GRID) + 2
-    size = 1 << (count + round(SEARCH / GRID)).bit_length()
-    grid = start + GRID * np.arange(count)
-    signal = np.interp(grid, reference_time, reference, left=0.0, right=0.0)
-    inside = ((grid >= reference_time[0]) & (grid <= reference_time[-1])).astype(np.float64)
-    place = np.rint((time - start) / GRID).astype(int)
-    lag = np.arange(-round(SEARCH / GRID), round(SEARCH / GRID) + 1)
-
-    def correlated(samples: FloatArray, series: FloatArray) -> FloatArray:
-        comb = np.fft.rfft(np.bincount(place, samples, count), size)
-        return np.asarray(np.fft.irfft(comb * np.conj(np.fft.rfft(series, size)), size)[lag])
-
-    product = correlated(weight * values, signal)
-    energy = correlated(weight, signal**2)
-    total = np.maximum(correlated(weight * values**2, inside), SHARPEST)
-    compared = correlated(weight, inside)
-    gain = product / np.maximum(energy, SHARPEST)
-    believed = (gain > SMALLEST_GAIN) & (gain < LARGEST_GAIN) & (compared > OVERLAP * np.sum(weight))
-    explained = np.where(believed, product * gain / total, 0.0)
-    # per compared sample, so that an offset is not favoured for the samples it leaves without a partner
-    misfit = np.where(believed, (1.0 - explained) * total / np.maximum(compared, SHARPEST), np.inf)
-    return Scan(np.asarray(lag * GRID, dtype=np.float64), gain, explained, misfit)
-
-
-def effective_count(residual: FloatArray) -> float:
-    """Return how many independent samples a coloured residual amounts to (first-order autoregression).
+    """Fit the gain at every offset of a grid, by correlation.
 
     Parameters
     ----------
-    residual : ndarray
-        (n,)
+    comparison : Comparison
+        For its spans.
+    pair : Pair
+        Both records in the band that is compared.
+    believable_drift : float
+        Largest drift [1]: over a long record it moves the ends apart.
+    slowest, cutoff : float
+        The band [Hz]; a `slowest` of 0 says that the signals are level as they are.
     """
-    if residual.size < 3:
-        return float(residual.size)
-    power = float(np.dot(residual, residual))
-    correlation = float(np.dot(residual[1:], residual[:-1])) / power if power > 0.0 else 0.0
-    correlation = min(max(correlation, 0.0), 0.999)
-    return residual.size * (1.0 - correlation) / (1.0 + correlation)
+    from scipy.fft import irfft, next_fast_len, rfft
+
+    clock, reference = pair.clock, pair.reference
+    if slowest > 0.0:
+        clock, reference = _level(clock, slowest), _level(reference, slowest)
+    use = clock.usable.copy()
+    if comparison.only:
+        use &= comparison.numbers(clock.time) >= 0
+    grid = float(np.clip(GRID_SHARE / cutoff, FINEST, COARSEST))
+    length = max(clock.stop - clock.start, reference.stop - reference.start)
+    most = int(np.ceil(0.5 * believable_drift * length / grid))
+    drifts = believable_drift * np.linspace(-1.0, 1.0, 2 * most + 1)
+    time, values = clock.time[use], clock.values[use]
+    reach = SEARCH + RIVALS
+    first = min(reference.start, clock.start * (1.0 - believable_drift)) - reach - 1.0
+    last = max(reference.stop, clock.stop * (1.0 + believable_drift)) + reach + 1.0
+    count = int((last - first) / grid) + 2
+    size = int(next_fast_len(count + round(reach / grid), real=True))
+    instants = np.asarray(first + grid * np.arange(count), dtype=np.float64)
+    seen = reference.usable_at(instants)
+    signal = np.where(seen, np.interp(instants, reference.time, reference.values), 0.0)
+    spectra = [np.conj(rfft(series, size)) for series in (signal, signal**2, seen.astype(np.float64))]
+    steps = np.arange(-round(reach / grid), round(reach / grid) + 1)
+
+    def correlated(comb: ComplexArray, spectrum: ComplexArray) -> FloatArray:
+        return np.asarray(irfft(comb * spectrum, size)[steps], dtype=np.float64)
+
+    scans: list[Scan] = []
+    for drift in drifts:
+        place = (time / (1.0 + drift) - first) / grid
+        below = place.astype(np.int64)
+        share = place - below
+
+        def comb(samples: FloatArray, below: IntegerArray = below, share: FloatArray = share) -> ComplexArray:
+            spread = np.bincount(below, samples * (1.0 - share), count)
+            spread += np.bincount(below + 1, samples * share, count)
+            return np.asarray(rfft(spread, size), dtype=np.complex128)
+
+        there = comb(np.ones(time.size))
+        product = correlated(comb(values), spectra[0])
+        energy = np.maximum(correlated(there, spectra[1]), SHARPEST)
+        compared = correlated(there, spectra[2])
+        total = np.maximum(correlated(comb(values**2), spectra[2]), SHARPEST)
+        gain = product / energy
+        shared = OVERLAP * min(time.size, np.count_nonzero(seen) * grid / clock.step)
+        believed = (gain > SMALLEST_GAIN) & (gain < LARGEST_GAIN) & (compared > shared)
+        explained = np.where(believed, product * gain / total, 0.0)
+        # per compared sample: no offset is favoured for the samples it leaves without a partner
+        misfit = np.where(believed, (1.0 - explained) * total / np.maximum(compared, 1.0), np.inf)
+        scan = Scan(grid * steps * (1.0 + drift), misfit, explained, np.full(steps.size, drift))
+        scans.append(scan)
+    return reduce(Scan.or_better, scans)
+
+
+def _level(signal: Signal, slowest: float) -> Signal:
+    """Return the signal without what its levels explain."""
+    columns = levels(signal.time, slowest)
+    use = signal.usable
+    found = np.linalg.solve(
+        columns[use].T @ columns[use] + SHARPEST * np.eye(columns.shape[1]),
+        columns[use].T @ signal.values[use],
+    )
+    return replace(signal, values=signal.values - columns @ found)

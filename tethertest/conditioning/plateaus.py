@@ -74,7 +74,7 @@ def _leaps(channel: Channel, first: np.ndarray, last: np.ndarray) -> BoolArray:
     step = max(quantum(values[np.isfinite(values)]), white_noise(values))
     following = values[np.minimum(last + 1, values.size - 1)]
     leap = np.abs(following - values[last]) > LEAP_STEPS * step
-    reach = max(round(APPROACH * channel.rate), 1)
+    reach = max(round(min(APPROACH * channel.rate, values.size)), 1)
     before = values[np.maximum(first - reach, 0)]
     fast = np.abs(values[first] - before) > LEAP_STEPS * step
     return np.asarray(leap | fast, dtype=bool)

@@ -6,31 +6,30 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from tethertest.conditioning.alignment import Pair
+from tethertest.conditioning.uniform import LOW_PASS, Signal, uniform
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Flag
 from tethertest.records.rig import Rig
-from tethertest.signal.filters import HOLE_INTERVALS, filled, low_passed, resampled, without_line
+from tethertest.signal.filters import filled
 
-#: strain and tension are compared above this: below it temperature and zero drift differ [Hz]
-STRAIN_HIGH_PASS = 0.5
+#: the motion is handed to the rig's mechanics below this [Hz] at this step [s]: what a tap of 60 ms has
+MOTION_TOP, MOTION_STEP = 100.0, 2e-3
+#: a motion that is under way when its record begins, or goes on after a hole, makes the rig settle for this
+#: long [s]; a hole shorter than this is bridged well enough [s]
+SETTLING, SHORTEST_HOLE = 2.5, 0.05
+#: and one that is still under way when it ends bends the filtered answer over this time [s]
+BENT = 0.5
 #: taps are compared above this: what the crank starts to do does not enter [Hz]
 TAP_HIGH_PASS = 2.0
-#: without taps the start and stop of the drive must enter [Hz]
-DRIVE_HIGH_PASS = 0.05
-#: noise above this says nothing about a tap of 60 ms or a UAV bouncing at 14 Hz [Hz]
-LOW_PASS = 45.0
-#: hum is followed over this time: the mains may wander by a tenth of a hertz [s]
-HUM_SPAN = 1.0
 #: the UAV bounces on the cable faster than this [Hz]
 SLOWEST_BOUNCE = 5.0
 #: a grating that lacks more than this fraction of its samples is left out of the mean
 LARGEST_LOSS = 0.2
-#: a load cell that lacks more than this is left out: the other end alone stands for the cable, a little late
+#: a load cell that lacks more than this is left out: the other end alone stands for the cable
 LARGEST_CELL_LOSS = 0.5
-#: a filter carries a bad sample this far [s]
-FILTER_REACH = 0.1
 
 
 def strain_pair(
@@ -60,32 +59,41 @@ def strain_pair(
     if not kept:
         return "every grating lacks too many samples to compare its clock by"
     factors = {sensor.name: sensor.gauge_factor or 1.0 for sensor in rig.sensor}
-    time = kept[0].time
-    total, usable = np.zeros(time.size), np.ones(time.size, dtype=bool)
+    total, usable = np.zeros(kept[0].time.size), np.ones(kept[0].time.size, dtype=bool)
     for channel in kept:
         values = filled(channel)
         strain = np.log(values / np.median(values)) / factors[channel.name]
         total += strain / len(kept)
         usable &= channel.usable
-    tension = (stiffness or 1.0) * total
+    if not usable.any():
+        return "no sample has a value of every grating to compare its clock by"
+    mean = kept[0].with_values((stiffness or 1.0) * total).with_flags(~usable, Flag.MISSING)
     place = float(np.mean([channel.at or 0.0 for channel in kept]))
-    rate = kept[0].rate
-    uniform = np.arange(time[0], time[-1] + 0.5 / rate, 1.0 / rate)
-    slow = low_passed(np.interp(uniform, time, tension), rate, STRAIN_HIGH_PASS)
-    there = _at_place(tensions, place)
-    return Pair(
-        there.time,
-        _band(there, STRAIN_HIGH_PASS, mains),
-        _worn(there.usable, there.rate),
-        time,
-        tension - np.interp(time, uniform, slow),
-        _worn(usable, rate),
-    )
+    return Pair(uniform(_at_place(tensions, place), mains), uniform(mean))
+
+
+def handed_over(heave: Channel) -> Channel:
+    """Return a displacement as the rig's mechanics is to have it.
+
+    It is band-limited and at uniform close times: straight lines between the samples of a slow log would bend
+    the answer.
+    """
+    signal = uniform(heave, top=MOTION_TOP)
+    time = np.arange(signal.start, signal.stop, MOTION_STEP)
+    values = CubicSpline(signal.time, signal.values)(time)
+    flags = np.where(signal.usable_at(time), np.uint16(0), np.uint16(Flag.MISSING)).astype(np.uint16)
+    return replace(heave, time=time, values=np.asarray(values, dtype=np.float64), flags=flags)
 
 
 def expected_pair(
-    expected: Channel, heave: Channel, bottom: Channel, mains: float, *, transients: bool
-) -> Pair:
+    expected: Channel,
+    heave: Channel,
+    bottom: Channel,
+    mains: float,
+    changes: tuple[FloatArray, ...],
+    *,
+    at_rest: tuple[bool, bool],
+) -> Pair | None:
     """Return the bottom tension that the motion asks for, beside the measured one.
 
     Parameters
@@ -93,82 +101,87 @@ def expected_pair(
     expected : Channel
         Bottom tension [N] that the displacement asks for, on its clock, at any times.
     heave : Channel
-        The displacement, for its unusable samples.
+        The displacement as `handed_over`, for its unusable samples.
     bottom : Channel
         Measured bottom tension [N] on the reference clock.
     mains : float
         Mains frequency [Hz]: hum is taken out of the measured tension.
-    transients : bool
-        True to leave out what is as slow as the drive.
+    changes : tuple of ndarray
+        (n,) each: change [N] of the expected tension at the displacement's times by what the rig does not
+        know.
+    at_rest : tuple of bool
+        Whether the record begins and ends at rest.
+
+    Returns
+    -------
+    Pair or None
+        None where nothing is known of one of the two.
     """
-    sound = _worn(heave.usable, heave.rate).astype(float)
-    seen = np.interp(expected.time, heave.time, sound, left=0.0, right=0.0)
-    cutoff = TAP_HIGH_PASS if transients else DRIVE_HIGH_PASS
-    there = _uniform(bottom)
-    answer, measured = _band(expected, cutoff, mains), _band(there, cutoff, mains)
-    if transients:
-        quarter = 0.25 / _bounce(answer, expected.rate)
-        answer = _without_bounce(expected.time, answer, quarter)
-        measured = _without_bounce(there.time, measured, quarter)
-    return Pair(
-        there.time,
-        measured,
-        _worn(there.usable, there.rate),
-        expected.time,
-        answer,
-        expected.usable & (seen == 1.0),
+    first = expected.time[0] + (0.0 if at_rest[0] else SETTLING)
+    last = expected.time[-1] - (0.0 if at_rest[1] else BENT)
+    known = np.interp(expected.time, heave.time, _settled(heave).astype(float), left=0.0, right=0.0) == 1.0
+    known &= (expected.time >= first) & (expected.time <= last)
+    if not known.any() or not bottom.usable.any():
+        return None
+    answer = uniform(expected.with_flags(~known, Flag.MISSING))
+    moved = tuple(_like(answer, heave, change) for change in changes)
+    return Pair(uniform(bottom, mains), answer, moved)
+
+
+def tap_pair(pair: Pair) -> Pair:
+    """Return what an expected pair has of taps: above the drive, without the UAV's free bouncing.
+
+    An error of the bounce's frequency adds up with every period, and noise of the motion rings there.
+    """
+    clock = pair.clock.high_passed(TAP_HIGH_PASS)
+    quarter = 0.25 / _bounce(clock)
+    changes = tuple(
+        _without_bounce(replace(clock, values=change).high_passed(TAP_HIGH_PASS), quarter).values
+        for change in pair.changes
     )
+    reference = pair.reference.high_passed(TAP_HIGH_PASS)
+    return Pair(_without_bounce(reference, quarter), _without_bounce(clock, quarter), changes)
 
 
-def _bounce(answer: FloatArray, rate: float) -> float:
+def _bounce(answer: Signal) -> float:
     """Return the frequency of the UAV's bouncing [Hz], where the expected tension is largest."""
-    spectrum = np.abs(np.fft.rfft(answer))
-    frequency = np.fft.rfftfreq(answer.size, 1.0 / rate)
+    spectrum = np.abs(np.fft.rfft(answer.values))
+    frequency = np.fft.rfftfreq(answer.values.size, answer.step)
     inside = (frequency >= SLOWEST_BOUNCE) & (frequency <= LOW_PASS)
     return float(frequency[inside][np.argmax(spectrum[inside])])
 
 
-def _without_bounce(time: FloatArray, values: FloatArray, quarter: float) -> FloatArray:
+def _without_bounce(signal: Signal, quarter: float) -> Signal:
     """Return the mean of two values half a bounce apart: free bouncing drops out, whatever started it."""
-    return 0.5 * (np.interp(time - quarter, time, values) + np.interp(time + quarter, time, values))
+    through = CubicSpline(signal.time, signal.values)
+    before = np.maximum(signal.time - quarter, signal.start)
+    after = np.minimum(signal.time + quarter, signal.stop)
+    return replace(signal, values=0.5 * (through(before) + through(after)))
 
 
-def _band(channel: Channel, cutoff: float, mains: float) -> FloatArray:
-    """Return what a uniformly sampled channel has between a frequency and `LOW_PASS`, without hum."""
-    values = filled(channel)
-    values = values - np.median(values)
-    if mains < 0.4 * channel.rate:
-        values = without_line(channel.time, values, mains, HUM_SPAN)
-    return low_passed(values, channel.rate, LOW_PASS) - low_passed(values, channel.rate, cutoff)
+def _settled(heave: Channel) -> BoolArray:
+    """Return where the motion is known, and was for long enough that the answer to it is."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([True], heave.usable, [True])).astype(np.int8)))
+    settled = heave.usable.copy()
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        if (last - first) * MOTION_STEP > SHORTEST_HOLE:
+            settled[first : last + round(SETTLING / MOTION_STEP)] = False
+    return settled
 
 
-def _uniform(channel: Channel) -> Channel:
-    """Return the channel at uniform times; what lies in holes of its stamps is not usable."""
-    rate = channel.rate
-    if float(np.max(np.diff(channel.time))) * rate < HOLE_INTERVALS:
-        return channel
-    time = np.arange(channel.time[0], channel.time[-1], 1.0 / rate)
-    values = resampled(channel, time)
-    missing = np.where(np.isfinite(values), np.uint16(0), np.uint16(Flag.MISSING))
-    return replace(channel, time=time, values=values, flags=missing.astype(np.uint16))
-
-
-def _worn(usable: BoolArray, rate: float) -> BoolArray:
-    """Return the mask without the samples that a filter has mixed with bad ones."""
-    reach = max(round(FILTER_REACH * rate), 1)
-    bad = np.concatenate(([0], np.cumsum(~usable)))
-    index = np.arange(usable.size)
-    first, last = np.maximum(index - reach, 0), np.minimum(index + reach + 1, usable.size)
-    return np.asarray(bad[last] == bad[first], dtype=bool)
+def _like(answer: Signal, heave: Channel, change: FloatArray) -> FloatArray:
+    """Return a change at the answer's times, filtered as the answer is."""
+    there = uniform(heave.with_values(change))
+    return np.asarray(CubicSpline(there.time, there.values)(answer.time), dtype=np.float64)
 
 
 def _at_place(tensions: Sequence[Channel], place: float) -> Channel:
-    """Return tension at a fraction of the length at uniform times, from both ends where they are sound."""
+    """Return tension at a fraction of the length, from both ends where they are sound."""
     ends = sorted(
         (channel for channel in tensions if channel.at is not None), key=lambda item: item.at or 0.0
     )
     sound = [channel for channel in ends if np.mean(channel.usable) >= 1.0 - LARGEST_CELL_LOSS] or ends[:1]
-    first, last = _uniform(sound[0]), sound[-1]
+    first, last = sound[0], sound[-1]
     span = (last.at or 0.0) - (first.at or 0.0)
     if span == 0.0:
         return first

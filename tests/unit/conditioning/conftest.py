@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tethertest.conditioning import Guide
-from tethertest.records.cable import Cable, Platform
+from tethertest.records.cable import Cable, Platform, PlatformMode
 from tethertest.records.channel import Channel, RawChannel, RawLog
 from tethertest.records.rig import Instrument, Limits, Rig, Sensor
 from tethertest.records.run import Drive, Log, Run, RunFile, Windows
@@ -61,7 +61,7 @@ def _cell(name: str, place: float) -> Sensor:
 RIG = Rig(
     "bench",
     Cable(CABLE, "unstretched", 0.0484, STIFFNESS),
-    Platform(MASS, 5.0),
+    Platform(MASS, 5.0, {"free": PlatformMode(HOVER, DAMPING)}),
     (
         _cell("tension_top", 1.0),
         _cell("tension_bottom", 0.0),

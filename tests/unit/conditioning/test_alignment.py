@@ -1,0 +1,141 @@
+"""Two noisy records of one waveform: offset, drift, their standard errors, and which cycle."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tethertest.conditioning.alignment import Comparison, Pair, fitted
+from tethertest.conditioning.band import best_cutoff
+from tethertest.conditioning.correlation import scanned
+from tethertest.conditioning.rivals import chosen
+from tethertest.conditioning.straight import delays, worst
+from tethertest.conditioning.uniform import Signal, uniform
+from tethertest.records.channel import Channel
+
+PRIOR = 1e-4 / np.sqrt(3.0)
+FREQUENCY, LENGTH, NOISE = 0.5, 60.0, 0.02
+OFFSET, DRIFT = 1.3, 4e-5
+SPANS = tuple((start, start + 8.0) for start in np.arange(2.0, 58.0, 8.0))
+
+
+def driven(time: np.ndarray, start: float = 8.0, ramp: float = 3.0) -> np.ndarray:
+    """Return a drive that starts from rest; with a start long before the record it is steady."""
+    turned = np.where(time < start, 0.0, np.clip(time - start, 0.0, ramp) ** 2 / (2.0 * ramp))
+    turned = turned + np.clip(time - start - ramp, 0.0, None)
+    return np.cos(2.0 * np.pi * FREQUENCY * turned)
+
+
+def pair(seed: int, *, rates=(200.0, 50.0), start: float = 8.0, jump: float = 0.0, noise=NOISE) -> Pair:
+    random = np.random.default_rng(seed)
+    signals = []
+    for rate, (offset, drift) in zip(rates, ((0.0, 0.0), (OFFSET, DRIFT)), strict=True):
+        true = np.arange(0.1, LENGTH, 1.0 / rate)
+        values = driven(true, start) + noise * random.standard_normal(true.size)
+        time = offset + (1.0 + drift) * true
+        if offset:
+            time = time + jump * (true > 35.0)
+        signals.append(uniform(Channel("s", "tension", "N", time, values, np.zeros(true.size, np.uint16))))
+    return Pair(signals[0], signals[1])
+
+
+def comparison(records: Pair, cutoff: float) -> Comparison:
+    return Comparison(records.low_passed(cutoff), SPANS, 0.03, cutoff, 0.0)
+
+
+def found(records: Pair):
+    cutoff = best_cutoff(records, FREQUENCY)
+    compared = comparison(records, cutoff)
+    scan = scanned(compared, records.low_passed(cutoff), 1e-4, 0.03, cutoff)
+    return compared, chosen(compared, scan.candidates(8), PRIOR, cutoff)
+
+
+@pytest.mark.parametrize("rates", [(200.0, 50.0), (40.0, 300.0)])
+def test_errors_scatter_as_stated(rates):
+    """Root mean square of error over standard error is 1, whichever record is the slower."""
+    scores = []
+    for seed in range(25):
+        line = fitted(comparison(pair(seed, rates=rates), 4.0), (OFFSET, DRIFT), PRIOR, 4.0)
+        error = np.array([line.offset - OFFSET, line.drift - DRIFT])
+        scores.append(error / np.sqrt(np.diag(line.covariance)))
+    spread = np.sqrt(np.mean(np.square(scores), axis=0))
+    np.testing.assert_allclose(spread, 1.0, atol=0.35)
+
+
+def test_standard_error_is_that_of_the_bound():
+    """White noise of both records at frequency f: ``sigma^2 = n / (integral of the slope's square)``."""
+    line = fitted(comparison(pair(3), 4.0), (OFFSET, DRIFT), 1e-9, 4.0)
+    density = NOISE**2 * (1.0 / 200.0 + 1.0 / 50.0)
+    energy = 0.5 * (2.0 * np.pi * FREQUENCY) ** 2 * (LENGTH - 10.0)
+    assert np.sqrt(line.covariance[0, 0]) == pytest.approx(np.sqrt(density / energy), rel=0.15)
+
+
+def test_what_the_rig_does_not_know_widens_the_offset_by_the_delay_it_makes():
+    """A change that is the delay of 5 ms itself adds 5 ms."""
+    records = pair(3).low_passed(4.0)
+    clock = records.clock
+    late = -5e-3 * np.gradient(clock.values, clock.step)
+    plain = fitted(Comparison(records, SPANS, 0.03, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
+    unsure = fitted(
+        Comparison(Pair(records.reference, clock, (late,)), SPANS, 0.03, 4.0, 0.0),
+        (OFFSET, DRIFT),
+        PRIOR,
+        4.0,
+    )
+    added = np.sqrt(unsure.covariance[0, 0] - plain.covariance[0, 0])
+    assert added == pytest.approx(5e-3, rel=0.03)
+    assert unsure.offset == plain.offset
+
+
+def test_a_start_chooses_the_cycle():
+    _, (line, rivals) = found(pair(5))
+    assert rivals == ()
+    assert line.offset == pytest.approx(OFFSET, abs=2e-3)
+    assert line.drift == pytest.approx(DRIFT, abs=5e-5)
+
+
+@pytest.mark.parametrize("noise", [0.1 * NOISE, NOISE, 10.0 * NOISE])
+def test_a_steady_drive_chooses_none(noise):
+    """However little noise there is: offsets a period apart fit alike."""
+    _, (line, rivals) = found(pair(5, start=-100.0, noise=noise))
+    assert rivals
+    nearest = min(abs(item.offset - line.offset) for item in rivals)
+    assert nearest == pytest.approx(1.0 / FREQUENCY, abs=0.02)
+
+
+def test_a_clock_that_jumps_by_20_ms_does_not_run_straight():
+    compared, (line, _) = found(pair(5, jump=0.02))
+    left = worst(delays(compared, line))
+    assert left is not None
+    assert abs(left.delay) > 5e-3
+    compared, (line, _) = found(pair(5))
+    assert worst(delays(compared, line)) is None
+
+
+def test_drift_is_found_from_a_start_that_knows_none():
+    """100 ppm over ten minutes part the ends by 60 ms, a quarter of a period of the band."""
+    random = np.random.default_rng(1)
+    true = np.arange(0.0, 600.0, 0.02)
+    flags = np.zeros(true.size, np.uint16)
+    noisy = [driven(true) + NOISE * random.standard_normal(true.size) for _ in range(2)]
+    clock = uniform(Channel("c", "tension", "N", 1.0001 * true - 2.0, noisy[1], flags))
+    records = Pair(uniform(Channel("r", "tension", "N", true, noisy[0], flags)), clock)
+    compared = Comparison(records.low_passed(4.0), ((0.0, 590.0),), 0.03, 4.0, 0.0)
+    offset, drift = scanned(compared, records.low_passed(4.0), 1e-4, 0.03, 4.0).candidates(1)[0]
+    assert (offset, drift) == pytest.approx((-2.0, 1e-4), abs=0.02)
+    assert drift == pytest.approx(1e-4, abs=3e-5)
+
+
+def test_samples_near_a_hole_are_not_compared():
+    time = np.arange(0.0, 20.0, 0.01)
+    keep = (time < 8.0) | (time > 9.0)
+    signal = uniform(
+        Channel("s", "tension", "N", time[keep], driven(time[keep]), np.zeros(keep.sum(), np.uint16))
+    )
+    slow = signal.low_passed(2.0)
+    assert isinstance(slow, Signal)
+    inside = slow.time[~slow.usable]
+    assert inside.min() == pytest.approx(7.5, abs=0.06)
+    assert inside.max() == pytest.approx(9.5, abs=0.06)
+    true = driven(slow.time) - np.median(driven(time))
+    np.testing.assert_allclose(slow.values[slow.usable][20:-20], true[slow.usable][20:-20], atol=0.06)

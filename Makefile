@@ -24,6 +24,7 @@ test: setup  ## the tests
 verify: setup  ## every run of the campaign against its truth, and the long batteries
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m verify
 	$(BIN)/python datasets/check_rig3m.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python datasets/check_lines.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tethertest.studies.coverage 300 reports/error-coverage.md
 
 bench: setup  ## speed against error, stability, timings of whole processes and of reading

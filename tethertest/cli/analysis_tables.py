@@ -58,7 +58,7 @@ def _print_lines(found: dict[str, Any]) -> None:
         for peak in channel["peaks"]
     ]
     if rows:
-        _table(("channel", "order", "Hz", "amplitude", "95 %", "phase rad", "verdict"), rows)
+        print_table(("channel", "order", "Hz", "amplitude", "95 %", "phase rad", "verdict"), rows)
     for channel in found["channels"]:
         if channel["no_lines"] and not channel["peaks"]:
             typer.echo(f"  {_label(channel)}: no lines: {channel['no_lines']}")
@@ -88,7 +88,7 @@ def _print_channels(found: dict[str, Any]) -> None:
         )
     if rows:
         heads = ("minimum", "maximum", "slack", "slack s", "front N", "dv m/s", "cycles", "equal range")
-        _table(("channel", *heads), rows)
+        print_table(("channel", *heads), rows)
 
 
 def _print_waves(waves: dict[str, Any]) -> None:
@@ -118,7 +118,7 @@ def _print_waves(waves: dict[str, Any]) -> None:
                 )
             )
     if rows:
-        _table(("waves", "order", "up N", "down N", "energy ratio", ""), rows)
+        print_table(("waves", "order", "up N", "down N", "energy ratio", ""), rows)
     largest = waves["largest_tension"]
     if largest is not None:
         low, high = largest["at_interval"]
@@ -131,7 +131,8 @@ def _print_waves(waves: dict[str, Any]) -> None:
         typer.echo(f"  waves: {remark}")
 
 
-def _table(headings: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
+def print_table(headings: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
+    """Print rows under their headings."""
     from rich.console import Console
     from rich.table import Table
 

@@ -32,15 +32,26 @@ def analyze(
         list[str] | None,
         typer.Option("--set", help="KEY=VALUE of a [[log]] entry, for a bare log; may be repeated."),
     ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for figures, table of orders and numbers.")
+    ] = None,
+    across: Annotated[
+        bool, typer.Option("--across", help="Analyse the runs below a folder together.")
+    ] = False,
+    jobs: Annotated[int | None, typer.Option(help="Processes, with --across [one per core].")] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object on standard output.")
     ] = False,
 ) -> None:
     """Find the orders of the drive with verdicts, slack, snaps, load cycles and waves."""
+    from tethertest.errors import TethertestError
     from tethertest.pipeline.analysis_options import asked_options
     from tethertest.pipeline.analyze import analyze as analyze_path
     from tethertest.render.analysis import analysis_summary
 
+    if output is not None and output.resolve() == path.resolve():
+        message = "the output folder is the run folder, which holds raw data only"
+        raise TethertestError(message, f"choose another one, such as {path / 'analysis'}", path=output)
     options = asked_options(
         channels=tuple(channel or ()),
         drive_frequency=drive_frequency,
@@ -51,10 +62,24 @@ def analyze(
         rigs=rigs,
         settings=tuple(settings or ()),
     )
-    found = analysis_summary(analyze_path(path, options))
+    if across:
+        from tethertest.cli.across import analyze_runs
+
+        analyze_runs(path, options, output, jobs, as_json=as_json)
+        return
+    made = analyze_path(path, options)
+    found = analysis_summary(made)
+    if output is not None:
+        from tethertest.render.analysis_files import write_analysis
+
+        written, left_out = write_analysis(made, output)
+        found["paths"] = [str(file) for file in written]
+        found["notes"] += left_out
     if as_json:
         typer.echo(json.dumps(found, ensure_ascii=False, allow_nan=False))
         return
     from tethertest.cli.analysis_tables import print_analysis
 
     print_analysis(found)
+    if output is not None:
+        typer.echo(f"  {len(found['paths'])} files  ->  {output}")

@@ -12,8 +12,10 @@ from tethertest.records.channel import Channel, Window
 from tethertest.records.quantity import SI
 from tethertest.records.response import NaturalFrequency
 
-#: chance of one false line in a run or log, over all its channels
+#: chance of one false line in a log, over all its channels
 FALSE_LINES: Final = 0.01
+#: and in a run: a campaign has tens of them, and of all of it one in fifty may have a false line
+FALSE_LINES_OF_RUN: Final = 0.001
 #: a drive needs this many periods in the window
 FEWEST_PERIODS: Final = 3.0
 #: mains frequency unless another is given [Hz]

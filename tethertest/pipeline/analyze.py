@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Final
 
 from tethertest.errors import DataError, TethertestError
 from tethertest.pipeline.analysis_options import (
-    FALSE_LINES,
+    FALSE_LINES_OF_RUN,
     Options,
     check_drive,
     named_naturals,
@@ -21,6 +20,7 @@ from tethertest.pipeline.bare_log import bare_channels, check_usable
 from tethertest.pipeline.conditioned import conditioned, placed, read_logs
 from tethertest.pipeline.expect import expectation
 from tethertest.pipeline.read_bare import settings_of_a_run
+from tethertest.pipeline.run_drive import MOTION, drive_channels, run_crank, run_drive
 from tethertest.pipeline.stored import run_of
 from tethertest.pipeline.wave_findings import measured_waves, medium_of, replayed_waves
 from tethertest.readers import load_run
@@ -32,7 +32,8 @@ from tethertest.records.run import Run
 from tethertest.records.scene import Scene
 from tethertest.replay import BottomMotion, bottom_motion, replayed_channels, run_scene
 from tethertest.solver import modes, solve
-from tethertest.spectra import find_events, find_lines, fit_drive
+from tethertest.spectra import find_events, find_lines
+from tethertest.spectra.crank_angle import CrankAngle
 from tethertest.spectra.cycles import count_cycles, extremes
 from tethertest.spectra.resonances import resonance_notes
 from tethertest.spectra.snaps import measured_snaps
@@ -60,12 +61,13 @@ def analyze(path: Path, options: Options) -> Analysis:
     TethertestError
         The path cannot be read, or cannot be analysed as asked.
     """
-    if options.settings and (path.is_dir() or is_store(path)):
+    if options.settings and (path.is_dir() or (path.is_file() and is_store(path))):
         raise settings_of_a_run(path)
     if path.is_dir():
         if not (path / "run.toml").is_file():
             message = "the folder has no run.toml"
-            raise TethertestError(message, "name a run folder or a log, or a run store", path=path)
+            remedy = "name a run folder, a run store or a log; --across takes a folder of runs"
+            raise TethertestError(message, remedy, path=path)
         run = load_run(path, options.rigs)
         try:
             return analyze_run(str(path), run, conditioned(run, read_logs(run)), options)
@@ -95,7 +97,7 @@ def analyze_run(path: str, run: Run, measured: ConditionedRun, options: Options)
     DataError
         No such channel, no steady window, or a run that cannot be replayed.
     """
-    heave = measured.channel("heave")
+    heave = measured.channel(MOTION)
     spans = [channel.time[[0, -1]] for channel in measured.channels]
     duration = max(float(span[1]) for span in spans) - min(float(span[0]) for span in spans)
     scene = run_scene(run, duration)
@@ -107,18 +109,19 @@ def analyze_run(path: str, run: Run, measured: ConditionedRun, options: Options)
     window = _run_window(measured, options, nominal)
     drive = _run_drive(measured, wanted, window, nominal)
     notes = [f"{f.subject}: {f.text}" for f in measured.findings if f.severity != "note"]
-    motion = None
+    motion = crank = None
     if drive is not None and window is not None and heave is not None:
-        motion = _lines_of(run, scene, heave, window, drive, None, options, FALSE_LINES)
+        crank = run_crank(measured, window, drive)
+        motion = _lines_of(run, scene, heave, window, drive, None, options, FALSE_LINES_OF_RUN, crank)
     medium = medium_of(scene, run.rig)
-    level = FALSE_LINES / max(1, len(wanted))
+    level = FALSE_LINES_OF_RUN / max(1, len(wanted))
 
     def analysed(channel: Channel, side: str) -> ChannelAnalysis:
         item = _with_events(ChannelAnalysis(channel, side), window, medium)
         if drive is None or window is None:
             return replace(item, no_lines="no drive")
         try:
-            lines = _lines_of(run, scene, channel, window, drive, motion, options, level)
+            lines = _lines_of(run, scene, channel, window, drive, motion, options, level, crank)
         except DataError as error:
             if channel.name in options.channels and side == MEASURED:
                 raise
@@ -176,7 +179,7 @@ def replayed_response(
     DataError
         The run has no bottom motion.
     """
-    heave = measured.channel("heave")
+    heave = measured.channel(MOTION)
     if heave is None:
         message = "the run has no channel 'heave', so its bottom motion is not known"
         raise DataError(message, "add the encoder's log to run.toml, or leave out --replay")
@@ -219,14 +222,10 @@ def _run_drive(
 ) -> DriveFit | None:
     if nominal is None or window is None:
         return None
-    heave = measured.channel("heave")
-    channels = [heave] if heave is not None else [c for c in wanted if c.kind == "tension"] or list(wanted)
+    channels = drive_channels(measured, wanted)
     for channel in channels:
         check_drive(channel, window, nominal)
-    fit = fit_drive(channels, window, nominal)
-    clocks = {clock.clock: clock.drift_error for clock in measured.clocks}
-    drift_error = max(clocks.get(c.source.clock, 0.0) if c.source else 0.0 for c in channels)
-    return replace(fit, standard_error=math.hypot(fit.standard_error, drift_error * fit.frequency))
+    return run_drive(measured, channels, window, nominal)
 
 
 def _lines_of(
@@ -238,6 +237,7 @@ def _lines_of(
     motion: ChannelLines | None,
     options: Options,
     level: float,
+    crank: CrankAngle | None,
 ) -> ChannelLines:
     known = channel.name if motion is not None else None
     if motion is not None and known == motion.channel:
@@ -248,7 +248,7 @@ def _lines_of(
         natural_frequencies=(*told.natural_frequencies, *named_naturals(options)),
         mains=options.mains,
     )
-    return find_lines(channel, window, drive, told, significance=level)
+    return find_lines(channel, window, drive, told, significance=level, crank=crank)
 
 
 def _with_events(item: ChannelAnalysis, window: Window | None, medium: Medium) -> ChannelAnalysis:

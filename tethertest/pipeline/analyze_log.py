@@ -22,7 +22,7 @@ from tethertest.signal.windows import find_steady
 from tethertest.spectra import find_lines, fit_drive
 from tethertest.spectra.cycles import count_cycles, extremes
 from tethertest.spectra.resonances import resonance_notes
-from tethertest.spectra.thomson import peaks
+from tethertest.spectra.thomson import blind_search, peaks
 
 
 def analyze_log(
@@ -63,7 +63,7 @@ def analyze_log(
             cycles=count_cycles(channel, window) if channel.kind == "tension" else None,
         )
         if drive is None:
-            item = replace(item, no_lines="no drive frequency", peaks=peaks(channel, window))
+            item = replace(item, no_lines="no drive frequency", peaks=peaks(blind_search(channel, window)))
         else:
             item = _with_lines(item, window, drive, told, level, named=bool(options.channels))
         found.append(item)

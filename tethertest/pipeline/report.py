@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,9 +11,11 @@ import numpy as np
 from tethertest.compare import compare
 from tethertest.conditioning import stated_findings
 from tethertest.errors import DataError
+from tethertest.pipeline.analysis_options import FALSE_LINES_OF_RUN
 from tethertest.pipeline.conditioned import conditioned, placed, read_logs
 from tethertest.pipeline.expect import expectation
 from tethertest.pipeline.provenance import provenance
+from tethertest.pipeline.run_drive import MOTION, drive_channels, run_crank, run_drive
 from tethertest.readers import load_prototype_of, load_run
 from tethertest.records.channel import Channel, ConditionedRun, RawLog, Window
 from tethertest.records.lines import ChannelLines, DriveFit, Event
@@ -34,12 +35,8 @@ from tethertest.replay import (
 )
 from tethertest.similitude import similarity
 from tethertest.solver import FIRST_MESH, solve
-from tethertest.spectra import find_events, find_lines, fit_drive
+from tethertest.spectra import find_events, find_lines
 
-#: the sensor that measures the bottom motion
-MOTION = "heave"
-#: chance of one false line in a whole run, over all channels
-FALSE_LINES = 0.01
 #: finest mesh of a replay; a snap on the rig is not better known than this
 _FINEST_MESH = 40
 
@@ -116,12 +113,7 @@ def _reported(run: Run, prototype: Prototype | None, logs: Mapping[str, RawLog])
 def _drive(run: Run, measured: ConditionedRun) -> DriveFit | None:
     if run.file.drive.kind == "none" or run.file.drive.frequency is None or measured.steady is None:
         return None
-    heave = measured.channel(MOTION)
-    channels = [heave] if heave is not None else [c for c in measured.channels if c.kind == "tension"]
-    fit = fit_drive(channels, measured.steady, run.file.drive.frequency)
-    clocks = {clock.clock: clock.drift_error for clock in measured.clocks}
-    drift_error = max(clocks.get(c.source.clock, 0.0) if c.source else 0.0 for c in channels)
-    return replace(fit, standard_error=math.hypot(fit.standard_error, drift_error * fit.frequency))
+    return run_drive(measured, drive_channels(measured), measured.steady, run.file.drive.frequency)
 
 
 def _replay(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> _Replay | None:
@@ -153,11 +145,12 @@ def _lines(
     window = measured.steady
     scene = replayed.scene
     heave = measured.channel(MOTION)
+    crank = run_crank(measured, window, drive)
     motion = None
     found: list[ChannelLines] = []
     if heave is not None:
         told = expectation(run, scene, heave, drive.frequency, None)
-        motion = find_lines(heave, window, drive, told)
+        motion = find_lines(heave, window, drive, told, crank=crank)
         found.append(motion)
 
     def search(channels: tuple[Channel, ...]) -> tuple[ChannelLines, ...]:
@@ -168,7 +161,8 @@ def _lines(
                 window,
                 drive,
                 expectation(run, scene, channel, drive.frequency, motion),
-                significance=FALSE_LINES / len(searched),
+                significance=FALSE_LINES_OF_RUN / len(searched),
+                crank=crank,
             )
             for channel in searched
         )

@@ -45,13 +45,15 @@ class Line:
     frequency: float  #: [Hz]
     amplitude: float  #: de-biased, in the channel's unit
     phase: float  #: [rad] of cos(2 pi p/q f0 t + phase), t = 0 at the window's start
-    interval: tuple[float, float]  #: 95 % of the amplitude
-    standard_error: float  #: of the amplitude
+    interval: tuple[float, float]  #: 95 % of the amplitude, noise and calibration together
+    standard_error: float  #: of the amplitude, by noise alone
     p_value: float
     verdict: LineVerdict
     reason: str
     course: Course | None = None  #: of the lines that were followed over the record
     length_needed: float | None = None  #: [s] of a record that would resolve it, where this one does not
+    significant_above: float | None = None  #: raw amplitude, not de-biased, from which it is significant
+    calibration_error: float = 0.0  #: standard error of the amplitude by the channel's scale alone
 
 
 @dataclass(frozen=True, slots=True)

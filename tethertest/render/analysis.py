@@ -107,7 +107,9 @@ def _line(line: Line) -> dict[str, Any]:
         "phase": line.phase,
         "interval": list(line.interval),
         "standard_error": line.standard_error,
+        "calibration_error": line.calibration_error,
         "p_value": line.p_value,
+        "significant_above": line.significant_above,
         "verdict": line.verdict.value,
         "reason": line.reason,
     }

@@ -42,6 +42,7 @@ _AXIS_NAMES = {
     "displacement": "Displacement",
     "wavelength": "Wavelength",
     "temperature": "Temperature",
+    "other": "Value",
 }
 
 

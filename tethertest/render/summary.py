@@ -122,6 +122,8 @@ def _line(line: Line) -> Json:
         "amplitude": line.amplitude,
         "phase": line.phase,
         "interval": list(line.interval),
+        "standard_error": line.standard_error,
+        "calibration_error": line.calibration_error,
         "p_value": line.p_value,
         "verdict": line.verdict.value,
         "reason": line.reason,

@@ -22,7 +22,7 @@ ZERO_PADDING: Final = 8
 
 
 def fit_orders_and_free_lines(
-    blocks: Blocks, drive: float, orders: Sequence[Fraction], origin: float
+    blocks: Blocks, drive: float, orders: Sequence[Fraction], origin: float, white: float = 0.0
 ) -> OrderFit:
     """Fit the orders, then again with the strongest lines that are left at least 1/T away from all of them.
 
@@ -36,19 +36,21 @@ def fit_orders_and_free_lines(
         Those wanted.
     origin : float
         Time to which phases refer [s].
+    white : float
+        Density of the sensor's own white noise [unit^2/Hz].
 
     Returns
     -------
     OrderFit
         Of the orders; the free lines are among its sinusoids.
     """
-    fit = fit_orders(blocks, drive, orders, origin)
+    fit = fit_orders(blocks, drive, orders, origin, white=white)
     for _ in range(MOST):
         frequency = _strongest_left(fit)
         if frequency is None:
             break
         sinusoids = fit.sinusoids.extended(frequency, sinusoid_pair(blocks, frequency, origin))
-        fit = with_noise(blocks, drive, fit.orders, sinusoids)
+        fit = with_noise(blocks, drive, fit.orders, sinusoids, white)
     return fit
 
 

@@ -10,12 +10,12 @@ from typing import Final
 import numpy as np
 
 from tethertest.errors import DataError
-from tethertest.records.channel import Channel, Window
-from tethertest.records.lines import ChannelLines, DriveFit, Expectation, Line, LineVerdict
+from tethertest.records.channel import Channel, Flag, Window
+from tethertest.records.lines import ChannelLines, Course, DriveFit, Expectation, Line, LineVerdict
 from tethertest.spectra.course import course, phase_wander
 from tethertest.spectra.crank_angle import SMALLEST_WANDER, CrankAngle, crank_angle
 from tethertest.spectra.free_lines import fit_orders_and_free_lines
-from tethertest.spectra.holm import holm
+from tethertest.spectra.holm import holm, holm_chances
 from tethertest.spectra.leaks import folded_order, free_sources, leakage_floor
 from tethertest.spectra.loose import SEGMENTS, loosen
 from tethertest.spectra.orders import COMPANIONS, ORDERS, RESOLUTION, length_to_resolve
@@ -26,6 +26,7 @@ from tethertest.spectra.regression import (
     local_p_value,
     order_amplitudes,
 )
+from tethertest.spectra.side_lines import swings_phase
 from tethertest.spectra.stroboscope import stroboscopic_section
 from tethertest.spectra.tracking import Tracking, track, unsteadiness
 from tethertest.spectra.verdicts import NATURAL_RESOLUTION, Evidence, judge, length_needed
@@ -36,6 +37,8 @@ SIGNIFICANCE: Final = 0.01
 SMALLEST_RATIO: Final = 1e-5
 #: a channel's own wander is followed if that leaves less than this share of what was left
 OWN_GAIN: Final = 0.9
+#: share of a wander, followed by means over one or two cycles, that may be faster than these and stay
+UNFOLLOWED: Final = 0.3
 FUNDAMENTAL: Final = Fraction(1)
 
 
@@ -91,14 +94,28 @@ def find_lines(
         return _search(steadied, turned, drive, expectation, orders, significance, origin=window.start)
 
     search = search_on(crank if crank is not None and crank.varies else None)
-    if crank is None and (own := _own_pace(search, channel, window, drive)) is not None:
-        followed = search_on(own)
-        # a free line beats with order 1 and feigns wander, but following it explains nothing
-        if followed.left < OWN_GAIN * search.left:
-            crank, search = own, followed
+    measured = crank is not None
+    if crank is None and FUNDAMENTAL in search.significant:
+        wanders = phase_wander(_phases(search, window)) >= SMALLEST_WANDER
+        own = crank_angle(channel, window, drive) if wanders else None
+        if own is not None and own.varies:
+            followed = search_on(own)
+            # a free line beats with order 1 and feigns wander, but following it explains nothing
+            if followed.left < OWN_GAIN * search.left:
+                crank, search = own, followed
     varies = crank is not None and crank.varies
+    wander = UNFOLLOWED * crank.wander if crank is not None and varies else 0.0
     part = channel.between(window.start, window.stop)
-    lines = _lines(search, part, drive, orders, expectation, local_always=varies)
+    lines = _lines(
+        search,
+        part,
+        drive,
+        orders,
+        expectation,
+        wander,
+        followed=measured and not varies,
+        local_always=varies,
+    )
     used = int(np.count_nonzero(part.usable))
     variation = crank.speed_variation if crank is not None and varies else 0.0
     return ChannelLines(channel.name, channel.unit, window, lines, used, part.time.size - used, variation)
@@ -113,6 +130,7 @@ class _Search:
     adjusted: dict[Fraction, float]  #: p-values after Holm's correction
     significant: set[Fraction]
     level: float  #: chance of any false line
+    thresholds: dict[Fraction, float]  #: raw amplitude from which an order is significant
 
     @property
     def left(self) -> float:
@@ -132,31 +150,34 @@ def _search(
 ) -> _Search:
     blocks = channel_blocks(channel, window, drive.frequency, expectation.mains)
     start = window.start if origin is None else origin
-    fit = fit_orders_and_free_lines(blocks, drive.frequency, (*orders, *COMPANIONS), start)
+    white = 2.0 * channel.noise**2 / channel.rate
+    fit = fit_orders_and_free_lines(blocks, drive.frequency, (*orders, *COMPANIONS), start, white)
     tried = tuple(order for order in orders if order in fit.orders)
     if FUNDAMENTAL not in tried:
         message = f"channel {channel.name!r}: order 1 is not among the orders tried"
         raise DataError(message, "ask for order 1, or choose a longer window")
-    amplitudes = order_amplitudes(fit, tried)
-    adjusted = holm({order: amplitude.p_value for order, amplitude in amplitudes.items()})
+    amplitudes = {
+        order: amplitude.calibrated(channel.uncertainty)
+        for order, amplitude in order_amplitudes(fit, tried).items()
+    }
+    chances = {order: amplitude.p_value for order, amplitude in amplitudes.items()}
+    adjusted = holm(chances)
     smallest = SMALLEST_RATIO * max(amplitude.value for amplitude in amplitudes.values())
     significant = {
         order for order in tried if adjusted[order] <= significance and amplitudes[order].value > smallest
     }
-    return _Search(fit, amplitudes, adjusted, significant, significance)
+    thresholds = {
+        order: max(smallest, amplitudes[order].significant_at(chance))
+        for order, chance in holm_chances(chances, significance).items()
+    }
+    return _Search(fit, amplitudes, adjusted, significant, significance, thresholds)
 
 
-def _own_pace(search: _Search, channel: Channel, window: Window, drive: DriveFit) -> CrankAngle | None:
-    """Return the crank's angle by the channel's own order 1, if that wanders."""
-    if FUNDAMENTAL not in search.significant:
-        return None
+def _phases(search: _Search, window: Window) -> Course:
+    """Return the course of order 1, cycle by cycle."""
     fit = search.fit
-    variance = float(fit.noise.density(drive.frequency)[0]) * fit.blocks.rate / 2.0
-    followed = course(loosen(fit, FUNDAMENTAL), variance, window.start, cycles=1.0, most=SEGMENTS // 2)
-    if phase_wander(followed) < SMALLEST_WANDER:
-        return None
-    pace = crank_angle(channel, window, drive)
-    return pace if pace.varies else None
+    variance = float(fit.noise.density(fit.drive)[0]) * fit.blocks.rate / 2.0
+    return course(loosen(fit, FUNDAMENTAL), variance, window.start, cycles=1.0, most=SEGMENTS // 2)
 
 
 def _lines(
@@ -165,7 +186,9 @@ def _lines(
     drive: DriveFit,
     orders: Sequence[Fraction],
     expectation: Expectation,
+    wander: float,
     *,
+    followed: bool,
     local_always: bool,
 ) -> tuple[Line, ...]:
     fit, amplitudes, significant = search.fit, search.amplitudes, search.significant
@@ -173,6 +196,7 @@ def _lines(
     sources = free_sources(fit, amplitudes, significant, tracked, search.level)
     broken = any(order.denominator != 1 for order in significant)
     changes = {order: unsteadiness(fit, order) for order in significant if broken and order.denominator == 1}
+    saturated = int(np.count_nonzero(part.flags & np.uint16(Flag.SATURATED)))
     lines = []
     for order in sorted(orders):
         frequency = float(order) * drive.frequency
@@ -199,11 +223,14 @@ def _lines(
             tracking=tracked.get(order),
             source=sources.get(order),
             section=stroboscopic_section(fit.blocks, drive.frequency) if half else None,
+            saturated=saturated,
+            wander=wander,
+            side_line=not followed and order in tracked and swings_phase(fit, order),
             expectation=expectation,
         )
         verdict, reason = judge(evidence)
         needed = length_needed(evidence) if verdict is LineVerdict.NOT_RESOLVABLE else None
-        lines.append(_line(evidence, verdict, reason, needed))
+        lines.append(_line(evidence, verdict, reason, needed, search.thresholds[order]))
     return tuple(lines)
 
 
@@ -225,7 +252,9 @@ def _tracked(
     }
 
 
-def _line(evidence: Evidence, verdict: LineVerdict, reason: str, needed: float | None) -> Line:
+def _line(
+    evidence: Evidence, verdict: LineVerdict, reason: str, needed: float | None, threshold: float
+) -> Line:
     amplitude = evidence.amplitude
     return Line(
         str(evidence.order),
@@ -239,6 +268,8 @@ def _line(evidence: Evidence, verdict: LineVerdict, reason: str, needed: float |
         reason,
         None if evidence.tracking is None else evidence.tracking.course,
         needed,
+        threshold,
+        amplitude.calibration_error,
     )
 
 

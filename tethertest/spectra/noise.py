@@ -61,6 +61,7 @@ class NoiseSpectrum:
     band: tuple[float, float]  #: [Hz] from the lowest to the highest ordinate it rests on; constant outside
     rate: float  #: [Hz]
     floor: float  #: smallest density that means anything [unit^2/Hz]
+    white: float  #: density of the sensor's own white noise, below which no residual falls but by chance
     ceiling: float  #: largest density that the residuals show anywhere [unit^2/Hz]
 
     def density(self, frequency: FloatArray | float) -> FloatArray:
@@ -69,13 +70,15 @@ class NoiseSpectrum:
         basis = _basis(points, self.frequency, self.polynomial.size)
         # a replay's residuals span many decades: the polynomial must not overshoot what they show
         logarithm = np.minimum(basis @ self.polynomial, np.log(self.ceiling))
-        smooth: FloatArray = np.maximum(np.exp(logarithm), self.floor)
+        smooth: FloatArray = np.maximum(np.exp(logarithm), max(self.floor, self.white))
         return smooth
 
     def freedom(self, frequency: float) -> float:
         """Return the degrees of freedom of the density there: 2 / variance of its logarithm."""
         point = np.clip(np.array([frequency]), *self.band)
         basis = _basis(point, self.frequency, self.polynomial.size)[0]
+        if self.white > 0.0 and float(basis @ self.polynomial) <= np.log(self.white):
+            return 2.0 * self.frequency.size / HANN_OVERLAP  # no longer an estimate from a few ordinates
         return 2.0 / (HANN_OVERLAP * float(basis @ self.inverse @ basis))
 
     def covariances(self, influence: FloatArray) -> FloatArray:
@@ -133,7 +136,12 @@ class NoiseSpectrum:
 
 
 def noise_spectrum(
-    residuals: FloatArray, weights: FloatArray, rate: float, lines: FloatArray, scale: float
+    residuals: FloatArray,
+    weights: FloatArray,
+    rate: float,
+    lines: FloatArray,
+    scale: float,
+    white: float = 0.0,
 ) -> NoiseSpectrum:
     """Fit the density of residuals.
 
@@ -147,6 +155,9 @@ def noise_spectrum(
         Fitted frequencies [Hz], where the residuals have lost power.
     scale : float
         Root mean square of the series itself; sets what round-off leaves.
+    white : float
+        Density of the sensor's own white noise [unit^2/Hz]. The few ordinates that the lowest orders leave
+        can show less by chance, but no sensor does; taken where the residuals' median does not contradict.
 
     Returns
     -------
@@ -162,6 +173,8 @@ def noise_spectrum(
         / (rate * float(window @ window))
         for window in (taper, np.asarray(weights > 0.0, dtype=np.float64))
     )
+    # an exponential variable's median is ln 2 of its mean
+    white = min(white, float(np.median(plain)) / np.log(2.0)) if plain.size else 0.0
     floor = ROUND_OFF * max(scale, 1e-150) ** 2 / rate
     share, plain_share = _shares_left(frequency, lines, count / rate)
     taken = (share > LEAST_SHARE).astype(np.float64)
@@ -173,7 +186,9 @@ def noise_spectrum(
     ]
     band = (float(rests_on[0]), float(rests_on[-1])) if rests_on.size else (frequency[0], frequency[-1])
     ceiling = float(np.max(periodogram[taken > 0.0], initial=floor))
-    return NoiseSpectrum(frequency, plain, plain_share, polynomial, inverse, band, rate, floor, ceiling)
+    return NoiseSpectrum(
+        frequency, plain, plain_share, polynomial, inverse, band, rate, floor, white, ceiling
+    )
 
 
 def _shares_left(frequency: FloatArray, lines: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:

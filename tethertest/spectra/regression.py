@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -29,6 +29,8 @@ EXCESS_GATE = 2.8
 #: a line has this many times the power of the strongest ordinate left next to it: one of 7 standard errors
 #: fails that once in 500 records of white noise, the side line of a response without a period nearly always
 PEAK_RATIO = 3.0
+#: median of chi-squared with two degrees of freedom: the squared ratio that noise alone shows
+MEDIAN_OF_NOISE = 2.0 * np.log(2.0)
 #: 97.5 % point of the normal distribution
 NORMAL_QUANTILE = 1.959964
 
@@ -43,6 +45,25 @@ class Amplitude:
     interval: tuple[float, float]  #: 95 %
     f_value: float
     p_value: float
+    freedom: float = 1.0  #: degrees of freedom of the noise that F refers to
+    at_unit_f: float = 0.0  #: raw amplitude of this phase that has F = 1
+    calibration_error: float = 0.0  #: by the channel's scale; in the interval, not in `standard_error`
+
+    def calibrated(self, uncertainty: float) -> Amplitude:
+        """Return the amplitude whose interval also holds a relative standard uncertainty of the scale.
+
+        The two are independent, so that the interval's arms and the scale's add as squares.
+        """
+        low, high = self.interval
+        scale = uncertainty * self.value
+        lower = self.value - float(np.hypot(self.value - low, NORMAL_QUANTILE * scale))
+        upper = self.value + float(np.hypot(high - self.value, NORMAL_QUANTILE * scale))
+        return replace(self, interval=(max(0.0, lower), upper), calibration_error=scale)
+
+    def significant_at(self, chance: float) -> float:
+        """Return the raw amplitude of this phase whose p-value is that chance."""
+        f_value = np.expm1(-2.0 / self.freedom * np.log(chance)) * 0.5 * self.freedom
+        return float(np.sqrt(f_value)) * self.at_unit_f
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +82,12 @@ def amplitude_interval(raw: float, variance: float, freedom: float = np.inf) -> 
 
     The square of the raw amplitude over the variance follows a non-central chi-squared distribution with two
     degrees of freedom; the interval holds the amplitudes under which the one found is not in the outer 2.5 %.
-    An estimated variance widens it as Student's t does, by the degrees of freedom of the estimate.
+    An estimated variance widens it as Student's t does, by the degrees of freedom of the estimate. A record
+    that shows less than noise usually does bounds the amplitude no better than one that shows the median.
+
+    References
+    ----------
+    G. Cowan, K. Cranmer, E. Gross, O. Vitells, arXiv:1105.3166 (2011) (power-constrained limits).
     """
     from scipy.special import chndtrinc, stdtrit
 
@@ -75,7 +101,7 @@ def amplitude_interval(raw: float, variance: float, freedom: float = np.inf) -> 
         middle = float(np.sqrt(raw**2 - variance))
         return middle - half, middle + half
     lower = 0.0 if 1.0 - np.exp(-0.5 * ratio) < 0.975 else float(chndtrinc(ratio, 2.0, 0.975))
-    upper = 0.0 if 1.0 - np.exp(-0.5 * ratio) < 0.025 else float(chndtrinc(ratio, 2.0, 0.025))
+    upper = float(chndtrinc(max(ratio, MEDIAN_OF_NOISE), 2.0, 0.025))
     scale = float(np.sqrt(variance))
     return scale * float(np.sqrt(lower)), scale * float(np.sqrt(upper))
 
@@ -111,7 +137,12 @@ def channel_blocks(channel: Channel, window: Window, frequency: float, mains: fl
 
 
 def fit_orders(
-    blocks: Blocks, drive: float, orders: Sequence[Fraction], origin: float, free: Sequence[float] = ()
+    blocks: Blocks,
+    drive: float,
+    orders: Sequence[Fraction],
+    origin: float,
+    free: Sequence[float] = (),
+    white: float = 0.0,
 ) -> OrderFit:
     """Fit the orders a record can tell apart, and the density of what is left.
 
@@ -127,6 +158,8 @@ def fit_orders(
         Time to which phases refer [s].
     free : sequence of float
         Frequencies of further lines [Hz], fitted along.
+    white : float
+        Density of the sensor's own white noise [unit^2/Hz].
 
     Returns
     -------
@@ -134,7 +167,7 @@ def fit_orders(
         With the orders that were fitted.
     """
     fitted, sinusoids = order_sinusoids(blocks, drive, orders, origin, free)
-    return with_noise(blocks, drive, fitted, sinusoids)
+    return with_noise(blocks, drive, fitted, sinusoids, white)
 
 
 def order_sinusoids(
@@ -153,11 +186,17 @@ def order_sinusoids(
 
 
 def with_noise(
-    blocks: Blocks, drive: float, orders: tuple[Fraction, ...], sinusoids: SinusoidFit
+    blocks: Blocks,
+    drive: float,
+    orders: tuple[Fraction, ...],
+    sinusoids: SinusoidFit,
+    white: float = 0.0,
 ) -> OrderFit:
-    """Return fitted orders with the density of what they leave."""
+    """Return fitted orders with the density of what they leave, at least that of the sensor's white noise."""
     scale = float(np.sqrt(np.mean(blocks.values**2)))
-    noise = noise_spectrum(sinusoids.residuals, blocks.weights, blocks.rate, sinusoids.frequencies, scale)
+    noise = noise_spectrum(
+        sinusoids.residuals, blocks.weights, blocks.rate, sinusoids.frequencies, scale, white
+    )
     return OrderFit(blocks, drive, orders, sinusoids, noise)
 
 
@@ -198,6 +237,8 @@ def order_amplitudes(fit: OrderFit, orders: Sequence[Fraction]) -> dict[Fraction
             interval=amplitude_interval(raw, variance, freedom),
             f_value=f_value,
             p_value=float((1.0 + 2.0 * f_value / freedom) ** (-0.5 * freedom)),
+            freedom=freedom,
+            at_unit_f=float(np.sqrt(2.0 / (direction @ np.linalg.solve(covariance, direction)))),
         )
     return amplitudes
 

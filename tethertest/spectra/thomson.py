@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from tethertest.errors import DataError
 from tethertest.records.analysis import Peak
+from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Window
 from tethertest.signal.filters import filled
+from tethertest.spectra.multitaper import BANDWIDTH, f_value_at, harmonic_test, tapers
 
-#: time-bandwidth product and number of the tapers
-BANDWIDTH, TAPERS = 4.0, 7
 #: zero-padding: points per 1/T
 PADDING: Final = 4
 #: chance of one false peak among all frequencies of a record
@@ -22,10 +23,25 @@ MOST_SAMPLES: Final = 1 << 16
 FEWEST_SAMPLES: Final = 16
 
 
-def peaks(channel: Channel, window: Window, most: int = 12) -> tuple[Peak, ...]:
-    """Return the most significant lines of a window, at least the bandwidth W = 4/T apart.
+@dataclass(frozen=True, slots=True, eq=False)
+class BlindSearch:
+    """The harmonic F test at all frequencies of a record."""
 
-    ``F = (K - 1) |mu|^2 sum |H_k|^2 / sum |J_k - mu H_k|^2`` follows F(2, 2K - 2) under noise.
+    frequency: FloatArray  #: (m,) [Hz]
+    amplitude: FloatArray  #: (m,) peak of a cosine, in the channel's unit
+    p_value: FloatArray  #: (m,) of each frequency alone
+    significant_above: FloatArray  #: (m,) amplitude from which a line is significant over all of them
+    bandwidth: float  #: [Hz], W = 4/T: lines closer than this are one
+
+    @property
+    def significant(self) -> BoolArray:
+        """(m,) True where a line is significant over all frequencies."""
+        found: BoolArray = self.p_value * self.frequency.size <= SIGNIFICANCE
+        return found
+
+
+def blind_search(channel: Channel, window: Window) -> BlindSearch:
+    """Return the harmonic F test of a window at all frequencies between W and half the rate less W.
 
     Parameters
     ----------
@@ -33,13 +49,11 @@ def peaks(channel: Channel, window: Window, most: int = 12) -> tuple[Peak, ...]:
         Any kind; straight lines bridge samples that may not be used.
     window : Window
         The part to search.
-    most : int
-        Peaks returned at most.
 
     Returns
     -------
-    tuple of Peak
-        Those that are significant, by falling amplitude; where none is, the most significant one.
+    BlindSearch
+        Without any frequency where the channel stands still.
 
     Raises
     ------
@@ -50,8 +64,6 @@ def peaks(channel: Channel, window: Window, most: int = 12) -> tuple[Peak, ...]:
     ----------
     D. J. Thomson, Proc. IEEE 70 (1982) 1055-1096.
     """
-    from scipy.signal.windows import dpss
-
     part = channel.between(window.start, window.stop)
     if part.time.size < FEWEST_SAMPLES:
         message = f"channel {channel.name!r}: {part.time.size} samples in the window"
@@ -63,37 +75,48 @@ def peaks(channel: Channel, window: Window, most: int = 12) -> tuple[Peak, ...]:
     count = values.size
     trend = np.polynomial.Polynomial.fit(np.arange(count), values, 1)
     values = values - trend(np.arange(count))
-    if not np.any(values):
-        return ()
-    tapers = np.asarray(dpss(count, BANDWIDTH, TAPERS))
-    size = PADDING * count
-    spectra = np.fft.rfft(tapers * values, size, axis=1)
-    sums = tapers.sum(axis=1)
-    power = float(sums @ sums)
-    mean = (sums @ spectra) / power
-    left = np.sum(np.abs(spectra - sums[:, None] * mean) ** 2, axis=0)
-    f_value = (TAPERS - 1) * np.abs(mean) ** 2 * power / np.maximum(left, np.finfo(np.float64).tiny)
-    p_value = (1.0 + f_value / (TAPERS - 1)) ** (1 - TAPERS)  # survival of F(2, 2K - 2) in closed form
-    frequency = np.fft.rfftfreq(size, 1.0 / rate)
     bandwidth = BANDWIDTH * rate / count
-    usable = (frequency > bandwidth) & (frequency < 0.5 * rate - bandwidth)
+    nothing = np.empty(0)
+    if not np.any(values):
+        return BlindSearch(nothing, nothing, nothing, nothing, bandwidth)
+    shapes = tapers(count)
+    frequency = np.fft.rfftfreq(PADDING * count, 1.0 / rate)
+    inside = (frequency > bandwidth) & (frequency < 0.5 * rate - bandwidth)
+    transforms = np.fft.rfft(shapes * values, PADDING * count, axis=1)
+    test = harmonic_test(transforms[:, inside], shapes.sum(axis=1))
     # padded frequencies overlap, but a line is tried at each of them
-    tried = int(np.count_nonzero(usable))
+    needed = f_value_at(SIGNIFICANCE / max(1, int(np.count_nonzero(inside))))
+    return BlindSearch(
+        frequency[inside],
+        2.0 * np.abs(test.mean),
+        test.p_value,
+        float(np.sqrt(needed)) * test.at_unit_f,
+        bandwidth,
+    )
+
+
+def peaks(search: BlindSearch, most: int = 12) -> tuple[Peak, ...]:
+    """Return the most significant lines of a blind search, at least the bandwidth apart.
+
+    Parameters
+    ----------
+    search : BlindSearch
+        The test at all frequencies.
+    most : int
+        Peaks returned at most.
+
+    Returns
+    -------
+    tuple of Peak
+        Those that are significant, by falling amplitude; where none is, the most significant one.
+    """
     found: list[Peak] = []
-    for index in np.argsort(np.where(usable, p_value, np.inf)):
-        if not usable[index] or len(found) == most:
+    significant = search.significant
+    for index in np.argsort(search.p_value):
+        if len(found) == most or (found and not significant[index]):
             break
-        apart = all(abs(frequency[index] - peak.frequency) >= bandwidth for peak in found)
-        significant = bool(p_value[index] * tried <= SIGNIFICANCE)
-        if apart and (significant or not found):
-            found.append(
-                Peak(
-                    float(frequency[index]),
-                    2.0 * float(np.abs(mean[index])),
-                    float(p_value[index]),
-                    significant,
-                )
-            )
-        if not significant:
-            break
+        frequency = float(search.frequency[index])
+        if all(abs(frequency - peak.frequency) >= search.bandwidth for peak in found):
+            amplitude, p_value = float(search.amplitude[index]), float(search.p_value[index])
+            found.append(Peak(frequency, amplitude, p_value, bool(significant[index])))
     return tuple(sorted(found, key=lambda peak: -peak.amplitude))

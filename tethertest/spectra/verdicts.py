@@ -52,6 +52,9 @@ class Evidence:
     tracking: Tracking | None  #: for significant lines that could be something else than the drive's
     source: float | None  #: frequency [Hz] of a free line that explains this one away
     section: Section | None  #: for order 1/2
+    saturated: int  #: samples at the amplifier's limit, left out
+    wander: float  #: [rad] of the drive's phase that may not have been followed
+    side_line: bool  #: a swing of order 1's phase, and no motion says that the drive is steady
     expectation: Expectation
 
 
@@ -66,7 +69,8 @@ def judge(evidence: Evidence) -> Judged:
     Returns
     -------
     LineVerdict, str
-        Rules in this order: not significant; the drive itself; mains; brought in by the bottom motion;
+        Rules in this order: not significant; largest values lost; the drive itself; mains; brought in by the
+        bottom motion;
         harmonics; then for orders that are no whole number the conditions of a subharmonic, the first that
         fails giving the verdict.
     """
@@ -77,6 +81,11 @@ def judge(evidence: Evidence) -> Judged:
             f"{DETECTABLE * evidence.amplitude.standard_error:.2g} {evidence.unit} would show".replace(
                 "  ", " "
             )
+        )
+    if evidence.saturated:
+        return LineVerdict.UNDETERMINED, (
+            f"{size}, but {evidence.saturated} samples at the amplifier's limit are left out: the largest "
+            "values are lost, and neither amplitude nor interval holds; choose a window without them"
         )
     if evidence.order == 1:
         return LineVerdict.HARMONIC, f"the drive itself, {size}"
@@ -169,6 +178,16 @@ def _broken_order(evidence: Evidence) -> Judged:
     if tracking.drifts:
         return LineVerdict.UNDETERMINED, (
             f"its phase drifts by {tracking.drift:.2g} rad over the record (+/- {tracking.drift_error:.2g})"
+        )
+    if evidence.amplitude.value < evidence.wander * evidence.fundamental:
+        return LineVerdict.UNDETERMINED, (
+            "the drive's speed wanders, and what is too quick to be followed may leave side lines of up to "
+            f"{evidence.wander:.2g} of order 1"
+        )
+    if evidence.side_line:
+        return LineVerdict.UNDETERMINED, (
+            "with its mirror image about order 1 it makes a swing of order 1's phase, as a drive whose speed "
+            "swings does; log the crank's motion"
         )
     reason = (
         f"locked to the drive (free frequency {tracking.frequency:.5g} Hz, {abs(tracking.cycles):.2g} cycles "

@@ -18,6 +18,8 @@ def test_lines_have_the_shape_that_analyze_prints():
         "amplitude",
         "phase",
         "interval",
+        "standard_error",
+        "calibration_error",
         "p_value",
         "verdict",
         "reason",

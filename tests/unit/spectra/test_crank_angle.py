@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tethertest.records.arrays import FloatArray
-from tethertest.records.channel import Channel, Window
+from tethertest.records.channel import Channel, Flag, Window
 from tethertest.records.lines import Expectation, LineVerdict
 from tethertest.spectra import find_lines, fit_drive
 from tethertest.spectra.crank_angle import crank_angle
@@ -74,3 +76,105 @@ def test_a_free_line_beside_a_half_order_is_no_wander(
     record = channel(time, cosine(time, 0.25) + cosine(time, 0.132, 0.3, 1.0) + noise)
     drive = fit_drive([record], window, 0.25)
     assert find_lines(record, window, drive, Expectation()).speed_variation == 0.0
+
+
+def crank(turned: FloatArray, half: float = 0.0) -> FloatArray:
+    """Height of a crank-slider's slider; a gear error brings half the speed in."""
+    angle = 2.0 * np.pi * 0.3 * turned - 1.3
+    rod = np.sqrt(16.0 - np.sin(angle) ** 2) - 4.0
+    return np.asarray(0.1 * (np.cos(angle) + rod) + half * np.sin(0.5 * angle))
+
+
+def encoder(channel: Maker, time: FloatArray, values: FloatArray) -> Channel:
+    """Return a motion logged without its level taken out."""
+    motion: Channel = channel(time, values + 0.02, name="heave", kind="displacement", unit="m", at=0.0)
+    return motion
+
+
+@pytest.mark.parametrize("half", [0.0, 0.003])
+@pytest.mark.parametrize("cycles", [7, 10])
+def test_a_steady_crank_with_its_harmonics_does_not_wander(channel: Maker, half: float, cycles: int) -> None:
+    time = np.arange(0.0, cycles / 0.3, 0.005)
+    heave = encoder(channel, time, crank(time, half))
+    window = Window(0.0, float(time[-1]))
+    found = crank_angle(heave, window, fit_drive([heave], window, 0.3))
+    assert not found.varies
+    assert found.wander < 1e-3
+
+
+def test_lost_rows_of_the_encoder_are_no_wander(channel: Maker) -> None:
+    time = np.arange(0.0, 33.0, 0.005)
+    kept = np.ones(time.size, dtype=bool)
+    for start in (900, 2600, 4100):
+        kept[start : start + 150] = False
+    heave = encoder(channel, time[kept], crank(time[kept]))
+    window = Window(0.0, 33.0)
+    found = crank_angle(heave, window, fit_drive([heave], window, 0.3))
+    assert found.clear
+    assert found.wander < 1e-3
+
+
+def test_a_motion_that_is_missing_for_a_turn_tells_nothing(channel: Maker) -> None:
+    time = np.arange(0.0, 33.0, 0.005)
+    kept = (time < 12.0) | (time > 15.5)
+    heave = encoder(channel, time[kept], crank(time[kept]))
+    window = Window(0.0, 33.0)
+    assert not crank_angle(heave, window, fit_drive([heave], window, 0.3)).clear
+
+
+def test_a_channel_that_begins_before_the_motion_keeps_its_pace(
+    heave: Channel, tension: Channel, window: Window
+) -> None:
+    angle = crank_angle(heave.between(0.35, 67.0), window, fit_drive([heave], window, 0.25))
+    steadied = angle.steadied(tension)
+    assert angle.time[0] > steadied.time[0]
+    assert np.diff(steadied.time)[:5] == pytest.approx(np.diff(tension.time)[:5], rel=1e-6)
+
+
+def test_a_swing_of_the_speed_is_no_subharmonic_with_the_motion_or_without(
+    channel: Maker, time: FloatArray, window: Window
+) -> None:
+    """A swing every third turn puts lines at 2/3 and 4/3: less on the crank's angle, and never called."""
+    swing = np.sin(2.0 * np.pi * time / 12.0)
+    turned = time + 0.025 * 12.0 / (2.0 * np.pi) * swing
+    noise = np.random.default_rng(55).standard_normal(time.size)
+    record = channel(time, cosine(turned, 0.25) + 0.05 * noise)
+    motion = encoder(channel, time, cosine(turned, 0.25, 0.1, 0.4))
+    drive = fit_drive([motion], window, 0.25)
+    blind = find_lines(record, window, drive, Expectation()).line("2/3")
+    told = find_lines(record, window, drive, Expectation(), crank=crank_angle(motion, window, drive)).line(
+        "2/3"
+    )
+    assert blind is not None
+    assert told is not None
+    assert blind.amplitude == pytest.approx(0.0375, abs=0.006)
+    assert blind.verdict is LineVerdict.UNDETERMINED
+    assert told.amplitude < 0.5 * blind.amplitude
+    assert told.verdict is not LineVerdict.SUBHARMONIC
+
+
+def test_the_scale_of_a_cell_is_a_part_of_the_interval_of_its_own(
+    channel: Maker, time: FloatArray, window: Window
+) -> None:
+    record = channel(
+        time, cosine(time, 0.25, 2.0) + 0.02 * np.random.default_rng(56).standard_normal(time.size)
+    )
+    drive = fit_drive([record], window, 0.25)
+    bare = find_lines(record, window, drive, Expectation()).line("1")
+    cell = find_lines(replace(record, uncertainty=0.01), window, drive, Expectation()).line("1")
+    assert bare is not None
+    assert cell is not None
+    assert bare.calibration_error == 0.0
+    assert cell.calibration_error == pytest.approx(0.02, rel=1e-3)
+    assert (cell.standard_error, cell.phase) == (bare.standard_error, bare.phase)
+    assert cell.interval[1] - cell.amplitude == pytest.approx(
+        1.96 * np.hypot(0.02, cell.standard_error), rel=1e-3
+    )
+
+
+def test_lost_peaks_leave_no_amplitude_standing(channel: Maker, time: FloatArray, window: Window) -> None:
+    values = cosine(time, 0.25, 2.0) + 0.02 * np.random.default_rng(57).standard_normal(time.size)
+    record = channel(time, values).with_flags(values > 1.5, Flag.SATURATED)
+    line = find_lines(record, window, fit_drive([record], window, 0.25), Expectation()).line("1")
+    assert line is not None
+    assert line.verdict is LineVerdict.UNDETERMINED

@@ -10,7 +10,7 @@ from tethertest.records.channel import Flag, Window
 from tethertest.records.response import NaturalFrequency
 from tethertest.spectra.cycles import count_cycles, extremes, turning_points
 from tethertest.spectra.resonances import resonance_notes
-from tethertest.spectra.thomson import peaks
+from tethertest.spectra.thomson import blind_search, peaks
 
 from .conftest import Maker, cosine
 
@@ -59,12 +59,15 @@ def test_a_blind_search_finds_lines_and_invents_few(channel: Maker) -> None:
     time = np.arange(2048) / 30.0
     window = Window(0.0, float(time[-1]))
     false = sum(
-        any(peak.significant for peak in peaks(channel(time, random.standard_normal(2048)), window))
+        any(
+            peak.significant
+            for peak in peaks(blind_search(channel(time, random.standard_normal(2048)), window))
+        )
         for _ in range(100)
     )
     assert false <= 5  # at a chance of 1 %, six are seen once in 1800 times
     mixed = cosine(time, 0.5) + cosine(time, 1.5, 0.3) + 0.1 * random.standard_normal(2048)
-    found = [peak for peak in peaks(channel(time, mixed), window) if peak.significant]
+    found = [peak for peak in peaks(blind_search(channel(time, mixed), window)) if peak.significant]
     assert [peak.frequency for peak in found[:2]] == pytest.approx([0.5, 1.5], abs=0.005)
     assert [peak.amplitude for peak in found[:2]] == pytest.approx([1.0, 0.3], rel=0.05)
 

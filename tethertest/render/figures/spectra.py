@@ -132,12 +132,12 @@ def _draw_panel(axes: Axes, panel: Panel, lowest: float) -> None:
     if highest > lowest:
         axes.set_xlim(lowest, highest)
     for axis, steps in ((axes.xaxis, (1.0, 3.0)), (axes.yaxis, (1.0,))):
-        axis.set_major_locator(FixedLocator(_ticks(*axis.get_view_interval(), steps)))
+        axis.set_major_locator(FixedLocator(decade_ticks(*axis.get_view_interval(), steps)))
         axis.set_minor_locator(NullLocator())
-        axis.set_major_formatter(FuncFormatter(_plain))
+        axis.set_major_formatter(FuncFormatter(plain_number))
 
 
-def _ticks(low: float, high: float, steps: tuple[float, ...]) -> list[float]:
+def decade_ticks(low: float, high: float, steps: tuple[float, ...]) -> list[float]:
     """Return the ticks within a span, no others: ticks are what matplotlib takes its time for."""
     first, last = int(np.floor(np.log10(low))), int(np.ceil(np.log10(high)))
     ticks = [step * 10.0**decade for decade in range(first, last + 1) for step in steps]
@@ -169,5 +169,6 @@ def _mark_orders(axes: Axes, lines: ChannelLines) -> None:
             )
 
 
-def _plain(value: float, _position: int) -> str:
+def plain_number(value: float, _position: int) -> str:
+    """Return a tick's label without a power of ten."""
     return f"{value:g}"

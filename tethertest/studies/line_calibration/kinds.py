@@ -18,6 +18,7 @@ from tethertest.studies.line_calibration.records import (
     noisy,
     one_over_f,
     ramps_left_in,
+    swinging,
     wandering,
     white,
 )
@@ -57,6 +58,7 @@ KINDS: Final = (
     ),
     Kind("drive wanders 1 %", wandering(measured=False)),
     Kind("drive wanders 1 %, motion measured", wandering(measured=True)),
+    Kind("drive swings 2 to 3 %", swinging),
     Kind("free natural frequency, not stated", free(decays=False, stated=False), beyond=True),
     Kind("decaying natural frequency, not stated", free(decays=True, stated=False)),
 )

@@ -30,7 +30,7 @@ from tethertest.studies.line_calibration.records import (
 )
 
 #: amplitudes tried, in standard errors
-AMPLITUDES: Final = (3.0, 4.0, 5.0, 6.0, 7.0, 10.0, 30.0)
+AMPLITUDES: Final = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 10.0, 30.0)
 #: share of the F test's power that the other six conditions may cost
 PRICE: Final = 0.15
 #: and at this many standard errors this share is found
@@ -71,6 +71,11 @@ class Found:
         """Share found."""
         return self.found / self.records
 
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Shares that hold the true power with a chance of 95 % at least."""
+        return binomial_interval(self.found, self.records)
+
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
@@ -85,6 +90,20 @@ class Coverage:
     def share(self) -> float:
         """Share of the intervals that hold it."""
         return self.inside / self.intervals
+
+
+def binomial_interval(count: int, records: int) -> tuple[float, float]:
+    """Return the 95 % interval of a share; it holds the true one 95 times in 100 or more.
+
+    References
+    ----------
+    C. J. Clopper, E. S. Pearson, Biometrika 26 (1934) 404-413.
+    """
+    from scipy.stats import beta
+
+    low = float(beta.ppf(0.025, count, records - count + 1)) if count else 0.0
+    high = float(beta.ppf(0.975, count + 1, records - count)) if count < records else 1.0
+    return low, high
 
 
 def theoretical_power(amplitude: float) -> float:

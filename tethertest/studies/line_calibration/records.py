@@ -27,6 +27,8 @@ STANDARD_ERROR: Final = NOISE * float(np.sqrt(2.0 / COUNT))
 CLOCK_DRIFT: Final = 80e-6
 #: relative, root mean square; and the time over which the speed forgets itself [s]
 WANDER, WANDER_TIME = 0.01, 8.0
+#: relative amplitude of a swing of the speed, and its period [s]
+SWING, SWING_PERIOD = (0.02, 0.03), (10.0, 40.0)
 #: the motion is measured this well: its amplitude over its noise
 MOTION_CLEARNESS: Final = 1000.0
 
@@ -178,6 +180,17 @@ def wandering(*, measured: bool) -> Callable[[Random], Record]:
         return Record(tension(values), seen, frequency, Expectation())
 
     return make
+
+
+def swinging(random: Random) -> Record:
+    """Return a drive whose speed swings by 2 to 3 % with a period of 10 to 40 s, the motion not measured."""
+    frequency = some_drive(random)
+    depth, period = random.uniform(*SWING), random.uniform(*SWING_PERIOD)
+    phase = random.uniform(0.0, 2.0 * np.pi)
+    swing = np.sin(2.0 * np.pi * TIME / period + phase)
+    turned = TIME + depth * period / (2.0 * np.pi) * (swing - swing[0])
+    values = driven(random, frequency, turned) + NOISE * white(random)
+    return Record(tension(values), None, frequency, Expectation())
 
 
 def with_half(record: Record, random: Random, amplitude: float) -> Record:

@@ -1,0 +1,217 @@
+"""What each run of a folder contributes to curves over many runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from tethertest.errors import DataError, TethertestError
+from tethertest.pipeline.analysis_options import Options
+from tethertest.pipeline.analyze import analyze_run
+from tethertest.pipeline.conditioned import conditioned, read_logs
+from tethertest.pipeline.stored import run_of
+from tethertest.readers import load_run
+from tethertest.records.across import RunChannel, RunPart
+from tethertest.records.analysis import Analysis, ChannelAnalysis
+from tethertest.records.channel import Channel, ConditionedRun, Window
+from tethertest.records.run import Run
+from tethertest.spectra import spectrum
+from tethertest.store import is_store, load_store
+
+#: kinds of channels that get curves; the motion is the setting they are drawn against
+KINDS: Final = ("tension", "strain")
+_MOTION: Final = "heave"
+#: share of a window's samples that may be unusable before a channel's amplitude is shown and not judged
+_FEW_UNUSABLE: Final = 0.01
+#: a spectrum is kept up to this multiple of the drive
+_HIGHEST_ORDER: Final = 8.0
+_STORES: Final = (".h5", ".hdf5")
+
+
+def members(folder: Path) -> tuple[Path, ...]:
+    """Return the run folders and run stores below a folder, by path.
+
+    Raises
+    ------
+    TethertestError
+        There is none, or the folder is itself a run.
+    """
+    if not folder.is_dir():
+        message = "--across: found a file, expected a folder of runs" if folder.exists() else "no such folder"
+        raise TethertestError(message, "name a folder that holds run folders", path=folder)
+    if (folder / "run.toml").is_file():
+        message = "--across: the folder is one run"
+        raise TethertestError(message, "name the folder above it, or leave out --across", path=folder)
+    folders = [path.parent for path in folder.rglob("run.toml")]
+    stores = [
+        path for path in folder.rglob("*") if path.suffix in _STORES and path.is_file() and is_store(path)
+    ]
+    found = (*sorted(folders), *sorted(stores))
+    if not found:
+        message = "--across: no run folder and no run store below it"
+        raise TethertestError(message, "name a folder whose folders hold a run.toml each", path=folder)
+    return found
+
+
+def run_parts(
+    paths: Sequence[Path], options: Options, jobs: int, done: Callable[[], None]
+) -> tuple[RunPart, ...]:
+    """Analyse runs, in the order of time; a run that cannot be analysed says why.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        Run folders and stores.
+    options : Options
+        As for one run.
+    jobs : int
+        Processes, of one core each.
+    done : callable
+        Called once after each run.
+    """
+    parts: list[RunPart] = []
+    if jobs == 1 or len(paths) == 1:
+        for path in paths:
+            parts.append(run_part(path, options))
+            done()
+    else:
+        from concurrent.futures import ProcessPoolExecutor
+        from multiprocessing import get_context
+
+        # a fork of a process that has threads may hang
+        with ProcessPoolExecutor(min(jobs, len(paths)), get_context("spawn")) as pool:
+            for part in pool.map(run_part, paths, [options] * len(paths)):
+                parts.append(part)
+                done()
+    first: dict[str, str] = {}
+    for place, part in enumerate(parts):
+        known = first.setdefault(part.run, part.path)
+        if known != part.path and not part.refused:
+            parts[place] = replace(part, refused=f"has the id of {known}, which is used")
+    return tuple(sorted(parts, key=lambda part: (part.time, part.path)))
+
+
+def run_part(path: Path, options: Options) -> RunPart:
+    """Analyse one run folder or store, as far as curves need it."""
+    part = RunPart(path.name, str(path))
+    try:
+        if path.is_dir():
+            run = load_run(path, options.rigs)
+            part = _described(part, run)
+            measured = conditioned(run, read_logs(run))
+        else:
+            stored = load_store(path)
+            run, measured = run_of(stored.header, path), stored.measured
+            part = _described(part, run)
+        return _analysed(part, run, measured, options)
+    except TethertestError as error:
+        return replace(part, refused=error.problem)
+
+
+def _described(part: RunPart, run: Run) -> RunPart:
+    drive = run.file.drive
+    return replace(
+        part,
+        run=run.file.id,
+        date=run.file.date.isoformat(),
+        time=run.file.date.timestamp(),
+        rig=run.file.rig,
+        mode=run.file.platform.mode,
+        nominal_frequency=drive.frequency,
+        nominal_amplitude=drive.radius or drive.amplitude,
+        axial_stiffness=run.rig.cable.axial_stiffness,
+        length=run.rig.cable.length,
+    )
+
+
+def _analysed(part: RunPart, run: Run, measured: ConditionedRun, options: Options) -> RunPart:
+    remarks = [f"{f.subject}: {f.text}" for f in measured.findings if f.severity != "note"]
+    part = replace(part, remarks=tuple(remarks), from_rest=measured.rest_before is not None)
+    if run.file.drive.kind == "none" and options.drive_frequency is None:
+        return replace(part, refused="no drive")
+    if options.channels and measured.channel(_MOTION) is not None:
+        options = replace(options, channels=tuple(dict.fromkeys((*options.channels, _MOTION))))
+    try:
+        analysis = analyze_run(part.path, run, measured, options)
+    except DataError as error:
+        if not options.replay:
+            raise
+        remarks.append(f"not replayed: {error.problem}")
+        analysis = analyze_run(part.path, run, measured, replace(options, replay=False))
+    if analysis.drive is None or analysis.window is None:
+        return replace(part, refused="no drive frequency: run.toml states none")
+    return replace(
+        part,
+        frequency=analysis.drive.frequency,
+        amplitude=_motion_amplitude(analysis) or part.nominal_amplitude,
+        channels=tuple(
+            _channel(item, measured.rest_before, analysis.window, analysis.drive.frequency)
+            for item in analysis.channels
+            if item.channel.kind in KINDS
+        ),
+        remarks=tuple(remarks),
+    )
+
+
+def _motion_amplitude(analysis: Analysis) -> float | None:
+    motion = analysis.find(_MOTION)
+    line = motion.lines.line("1") if motion is not None and motion.lines is not None else None
+    return line.amplitude if line is not None and line.amplitude > 0.0 else None
+
+
+def _channel(item: ChannelAnalysis, rest: Window | None, window: Window, frequency: float) -> RunChannel:
+    channel = item.channel
+    at_rest = None if rest is None else _mean(channel.between(rest.start, rest.stop))
+    largest = None
+    if at_rest is not None and item.extremes is not None:
+        largest = item.extremes.maximum - at_rest
+    found = None
+    try:
+        whole = spectrum(channel, window)
+    except DataError:
+        pass  # too few samples: there is no spectrum to draw
+    else:
+        kept = whole.frequency <= _HIGHEST_ORDER * frequency
+        found = whole.frequency[kept], whole.amplitude[kept]
+    return RunChannel(
+        channel.name,
+        channel.kind,
+        channel.unit,
+        item.side,
+        channel.at,
+        item.lines,
+        item.no_lines,
+        _damage(channel, window),
+        largest,
+        _rise(channel.between(window.start, window.stop)),
+        found,
+    )
+
+
+def _rise(channel: Channel) -> float:
+    """Return the largest that white noise of so many samples is expected to be."""
+    count = int(np.count_nonzero(channel.usable))
+    return channel.noise * math.sqrt(2.0 * math.log(count)) if count > 1 else 0.0
+
+
+def _mean(channel: Channel) -> float | None:
+    usable = channel.usable
+    return float(np.mean(channel.values[usable])) if usable.any() else None
+
+
+def _damage(channel: Channel, window: Window) -> str:
+    part = channel.between(window.start, window.stop)
+    if part.time.size == 0:
+        return "no sample in the window"
+    share = 1.0 - float(np.count_nonzero(part.usable)) / max(
+        part.time.size, math.floor(window.length * part.rate)
+    )
+    if share <= _FEW_UNUSABLE:
+        return ""
+    counts = ", ".join(f"{name} {number}" for name, number in part.flag_counts().items())
+    return f"{share:.1%} of the window's samples are missing or unusable" + (f" ({counts})" if counts else "")

@@ -294,3 +294,10 @@ def test_records_of_two_groups_in_one_block_of_data(made):
     np.testing.assert_array_equal(log.channels[0].values, F)
     np.testing.assert_array_equal(log.channels[1].values, SLOW + 1.0)
     np.testing.assert_array_equal(log.channels[1].time, SLOW)
+
+
+@pytest.mark.parametrize("time", [np.nan, np.inf, 1e300])
+def test_a_time_that_is_none_is_refused(made, time):
+    times = T.copy()
+    times[2] = time
+    refused(made(("fast", [Signal(F, times, name="F", unit="kN")])), "sample 3 of 'F' has the time")

@@ -17,6 +17,8 @@ from tethertest.readers.timeunits import SECONDS
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import RawChannel
 
+#: times are seconds from the start of a log, or since an epoch
+_LATEST: Final = 1e11
 #: what the master of a group counts, and conversions by a formula in the file, in version 4 and 3
 _TIME: Final = 1
 _FORMULA: Final = {True: 3, False: 10}
@@ -62,7 +64,7 @@ def channels_of(path: Path, file: Any, wanted: str | None) -> tuple[list[RawChan
             if group.trouble:
                 remarks.append(f"the channels of {group.name!r} are left out: {group.trouble}")
             else:
-                found += [(group.name, channel) for channel in _read(file, group, remarks)]
+                found += [(group.name, channel) for channel in _read(path, file, group, remarks)]
     if not found:
         told = "; ".join(remarks[:_SHOWN]) or "it is empty"
         message = f"the MDF file has no channel with numbers and a time: {told}"
@@ -111,7 +113,7 @@ def _is_old(group: Any) -> bool:
     return not hasattr(group.channel_group, "acq_name")
 
 
-def _read(file: Any, group: _Group, remarks: list[str]) -> list[RawChannel]:
+def _read(path: Path, file: Any, group: _Group, remarks: list[str]) -> list[RawChannel]:
     source = file.groups[group.number]
     kept = []
     for index in group.channels:
@@ -133,6 +135,13 @@ def _read(file: Any, group: _Group, remarks: list[str]) -> list[RawChannel]:
         if time is None:  # channels of one group share the array
             factor = SECONDS[_time_unit(source.channels[file.masters_db[group.number]])]
             time = frozen(np.asarray(signal.timestamps, dtype=np.float64) * factor)
+            sound = np.abs(time) < _LATEST
+            if not np.all(sound):
+                row = int(np.argmin(sound))
+                message = (
+                    f"sample {row + 1} of {signal.name!r} has the time {time[row]:g} s: the file is damaged"
+                )
+                raise FileFormatError(message, "copy the whole file again", path=path)
         values = samples.astype(np.float64)
         invalid = signal.invalidation_bits
         if invalid is not None and np.any(bad := np.asarray(invalid, dtype=bool)):

@@ -138,9 +138,7 @@ def _read(path: Path, file: Any, group: _Group, remarks: list[str]) -> list[RawC
             sound = np.abs(time) < _LATEST
             if not np.all(sound):
                 row = int(np.argmin(sound))
-                message = (
-                    f"sample {row + 1} of {signal.name!r} has the time {time[row]:g} s: it is damaged"
-                )
+                message = f"sample {row + 1} of {signal.name!r} has the time {time[row]:g} s: it is damaged"
                 raise FileFormatError(message, "copy the whole file again", path=path)
         values = samples.astype(np.float64)
         invalid = signal.invalidation_bits

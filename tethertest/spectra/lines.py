@@ -268,7 +268,7 @@ def _line(
         reason,
         None if evidence.tracking is None else evidence.tracking.course,
         needed,
-        threshold,
+        threshold if np.isfinite(threshold) else None,
         amplitude.calibration_error,
     )
 

@@ -61,8 +61,12 @@ class Amplitude:
         return replace(self, interval=(max(0.0, lower), upper), calibration_error=scale)
 
     def significant_at(self, chance: float) -> float:
-        """Return the raw amplitude of this phase whose p-value is that chance."""
-        f_value = np.expm1(-2.0 / self.freedom * np.log(chance)) * 0.5 * self.freedom
+        """Return the raw amplitude of this phase whose p-value is that chance.
+
+        It is infinite where the noise has so few degrees of freedom that none has.
+        """
+        with np.errstate(over="ignore"):
+            f_value = np.expm1(-2.0 / self.freedom * np.log(chance)) * 0.5 * self.freedom
         return float(np.sqrt(f_value)) * self.at_unit_f
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -14,6 +15,7 @@ from tethertest.records.lines import DriveFit, Expectation, LineVerdict
 from tethertest.spectra import find_lines
 from tethertest.spectra.holm import holm, holm_chances
 from tethertest.spectra.orders import ORDERS
+from tethertest.spectra.regression import Amplitude
 from tethertest.spectra.thomson import blind_search
 
 from .conftest import Maker, autoregressive, cosine
@@ -98,3 +100,9 @@ def test_a_blind_search_is_sure_exactly_above_its_level(
     needed = f.isf(0.01 / search.frequency.size, 2, 12)
     found = f.isf(search.p_value, 2, 12)
     assert (search.amplitude / search.significant_above) ** 2 == pytest.approx(found / needed, rel=1e-3)
+
+
+def test_no_amplitude_is_significant_where_the_noise_has_hardly_a_degree_of_freedom():
+    amplitude = Amplitude(1.0, 0.0, 0.1, (0.8, 1.2), 4.0, 0.5, freedom=0.02, at_unit_f=0.1)
+    assert amplitude.significant_at(1e-5) == np.inf
+    assert replace(amplitude, freedom=20.0).significant_at(1e-5) == pytest.approx(0.1 * 4.65003, rel=1e-5)

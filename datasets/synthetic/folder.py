@@ -23,6 +23,7 @@ from .logs_ni import write_tdms
 from .logs_optical import write_peaks, write_sensors
 from .noise import draw_clocks
 from .rig import MODES, Rig
+from .snaps import snaps
 from .tether import COURANT, DIFFUSION, RECORD_RATE, Truth, simulate
 
 DIGITS = 7
@@ -81,6 +82,7 @@ def make_run(plan: Plan, rig: Rig, target: Path, cache: Path | None) -> dict[str
         "orders": statement.orders(plan, truth),
         "slack": statement.slack(plan, truth),
         "peaks": statement.peaks(plan, truth),
+        "snaps": snaps(plan, rig, truth),
         "static": {
             "tension_top_N": truth.tension_top[rest][0],
             "tension_bottom_N": truth.tension_bottom[rest][0],

@@ -80,13 +80,13 @@ def orders(plan: Plan, truth: Truth) -> dict[str, Any] | None:
     return found
 
 
-def slack_intervals(time: Floats, tension: Floats) -> list[list[float]]:
-    """Return when a tension is at zero: short gaps joined, short intervals dropped."""
+def slack_intervals(time: Floats, tension: Floats, joined: float = SLACK_JOIN) -> list[list[float]]:
+    """Return when a tension is at zero: gaps shorter than `joined` (s) are, short intervals dropped."""
     below = np.concatenate(([0], (tension < SLACK_BELOW).astype(np.int8), [0]))
     edges = np.flatnonzero(np.diff(below))
     found: list[list[float]] = []
     for first, last in zip(edges[0::2], edges[1::2] - 1, strict=True):
-        if found and time[first] - found[-1][1] < SLACK_JOIN:
+        if found and time[first] - found[-1][1] < joined:
             found[-1][1] = float(time[last])
         else:
             found.append([float(time[first]), float(time[last])])

@@ -98,6 +98,28 @@ def test_slack_runs_are_slack_at_the_bottom() -> None:
         assert truth(run)["slack"]["tension_bottom"] == []
 
 
+@pytest.mark.parametrize("run", RUNS)
+def test_snaps_follow_slack_and_stay_below_the_largest_tension(run: str) -> None:
+    stated = truth(run)
+    for end in ("tension_bottom", "tension_top"):
+        snaps, slack = stated["snaps"][end], stated["slack"][end]
+        assert bool(snaps["start_s"]) == bool(slack)
+        for start, peak_time, peak in zip(snaps["start_s"], snaps["peak_s"], snaps["peak_N"], strict=True):
+            assert start <= peak_time
+            assert stated["snaps"]["below_N"] <= peak <= stated["peaks"]["run"][end]["max"]
+        # a long slack interval ends in a snap, within one step of the record
+        assert all(
+            any(begin < start <= stop + 1e-3 for start in snaps["start_s"])
+            for begin, stop in slack
+            if stop - begin > 0.05
+        )
+
+
+def test_the_largest_tension_of_the_period_two_run_is_a_snap() -> None:
+    stated = truth("run15")
+    assert max(stated["snaps"]["tension_bottom"]["peak_N"]) == stated["peaks"]["run"]["tension_bottom"]["max"]
+
+
 def test_period_two_is_in_the_tension_and_not_in_the_drive() -> None:
     lines = truth("run15")["orders"]
     assert lines["tension_top"]["1/2"]["amplitude"] > 1.0

@@ -30,6 +30,10 @@ RINGING: Final = 2e-3
 SHORTEST: Final = 0.01
 #: the snap is the largest tension within this time after re-tightening [s]
 SNAP_SPAN: Final = 0.25
+#: but a rise that still goes on then is followed until the tension falls below this share of its largest,
+#: and by this many standard deviations of a sample: a peak has two sides
+FALLEN: Final = 0.9
+CLEAR: Final = 4.0
 
 
 def find_events(
@@ -58,7 +62,8 @@ def find_events(
     shortest : float
         Shortest slack or taut interval [s].
     snap_span : float
-        Time after re-tightening within which the peak is looked for [s].
+        Time after re-tightening within which the peak is looked for [s]; a rise that still goes on then is
+        followed to its top, up to the next slack interval.
 
     Returns
     -------
@@ -84,12 +89,13 @@ def find_events(
     zero = max(zero, RINGING * float(np.max(np.abs(smooth))))
     events: list[Event] = []
     intervals = _slack_intervals(channel.time, smooth, zero, shortest)
+    values = np.where(channel.usable, channel.values, np.nan)
     for number, (start, stop) in enumerate(intervals):
         inside = (channel.time >= start) & (channel.time <= stop)
         lowest = float(smooth[inside].min()) if inside.any() else 0.0
         events.append(Event("slack", channel.name, start, stop, lowest))
         following = intervals[number + 1][0] if number + 1 < len(intervals) else np.inf
-        snap = _snap(channel, stop, min(stop + snap_span, following))
+        snap = _snap(channel, values, stop, stop + snap_span, following)
         if snap is not None:
             events.append(snap)
     return tuple(events)
@@ -136,10 +142,14 @@ def _crossing(time: FloatArray, tension: FloatArray, outside: int, inside: int, 
     return float(time[inside] + share * (time[outside] - time[inside]))
 
 
-def _snap(channel: Channel, start: float, stop: float) -> Event | None:
-    part = channel.between(start, stop)
-    values = np.where(part.usable, part.values, -np.inf)
-    if values.size == 0 or not np.isfinite(values.max()):
+def _snap(channel: Channel, values: FloatArray, start: float, stop: float, following: float) -> Event | None:
+    first = int(np.searchsorted(channel.time, start))
+    last, end = np.searchsorted(channel.time, [min(stop, following), following], "right")
+    if not np.isfinite(values[first:last]).any():
         return None
-    peak = int(np.argmax(values))
-    return Event("snap", channel.name, start, float(part.time[peak]), float(values[peak]))
+    peak = first + int(np.nanargmax(values[first:last]))
+    largest = np.fmax.accumulate(values[peak:end])
+    fallen = values[peak:end] < np.minimum(FALLEN * largest, largest - CLEAR * channel.noise)
+    top = int(np.argmax(fallen)) if fallen.any() else fallen.size
+    peak += int(np.nanargmax(values[peak : peak + top]))
+    return Event("snap", channel.name, start, float(channel.time[peak]), float(values[peak]))

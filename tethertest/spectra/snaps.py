@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from statistics import NormalDist
 from typing import Final
 
 import numpy as np
@@ -17,12 +18,19 @@ from tethertest.spectra.waves import Medium
 RISE: Final = (0.1, 0.9)
 #: the pulse ends where tension first falls below this share of its peak
 PULSE_END: Final = 0.5
-#: the record after re-tightening in which the pulse must end [s]: a snap on a tether lasts less
+#: the record after the peak in which the pulse must end [s]: a snap on a tether lasts less
 LONGEST_PULSE: Final = 1.0
 #: a rise is resolved by this many sampling intervals
 FEWEST_INTERVALS: Final = 2.0
 #: half width of a 95 % interval in standard errors
 COVERAGE: Final = 1.959964
+#: how far a top may stand above its largest sample, as a share of the largest second difference about it: a
+#: parabola asks for 1/8 at most, a wave of two samples per period for 1/4
+BETWEEN: Final = 0.25
+#: samples on either side of a top that tell how it bends
+AROUND: Final = 2
+#: samples within this many standard deviations of the largest vie with it
+VYING: Final = 4.0
 
 
 def measured_snaps(
@@ -36,6 +44,10 @@ def measured_snaps(
     ``Z dv``; one that arrives at a rigid end is doubled there. One sensor cannot tell which of the two it
     saw, so both speeds are given. The closed form of a slack cable at rest, pulled at V with the slack d, is
     ``EA e (e + d) = m V^2``; ``T/Z`` is then below V by ``c d/2`` where d is small.
+
+    Peak and front are samples. The tension may be larger between two of them, as far as the record bends
+    there; and the largest of many samples as high as each other is too large by their noise. Both are in the
+    intervals, which therefore are not symmetrical.
 
     Parameters
     ----------
@@ -68,9 +80,9 @@ def measured_snaps(
 
 
 def _measured(channel: Channel, event: Event, following: float, medium: Medium | None) -> Snap | None:
-    # one sample before the re-tightening and what follows, up to the next slack
-    stop = min(event.start + LONGEST_PULSE, following)
-    part = channel.between(event.start - 1.0 / channel.rate, max(stop, event.stop))
+    # one sample before the re-tightening and what follows, up to the next slack but past the top itself
+    stop = max(min(event.stop + LONGEST_PULSE, following), event.stop + AROUND / channel.rate)
+    part = channel.between(event.start - 1.0 / channel.rate, stop)
     usable = part.usable
     time, values = part.time[usable], part.values[usable]
     if time.size < 3:
@@ -80,19 +92,23 @@ def _measured(channel: Channel, event: Event, following: float, medium: Medium |
     low, high = (_first_above(time, values, share * peak, at_peak) for share in RISE)
     front = peak
     speed = interval = arrived = None
-    error = float(np.hypot(channel.noise, channel.uncertainty * peak))
+    error = float(np.hypot(channel.uncertainty * peak, channel.offset_uncertainty))
+    below = float(np.hypot(_vying(values, peak, channel.noise), COVERAGE * error))
+    above = float(np.hypot(COVERAGE * np.hypot(error, channel.noise), _between(values, at_peak)))
     if medium is not None:
-        front = _steepest(time[: at_peak + 1], values[: at_peak + 1], 2.0 * medium.length / medium.speed)
+        rise = values[: at_peak + 1]
+        front, top = _steepest(time[: at_peak + 1], rise, 2.0 * medium.length / medium.speed)
         speed = front / medium.impedance
-        spread = float(np.hypot(channel.noise / max(front, 1e-300), channel.uncertainty))
-        half = COVERAGE * speed * float(np.hypot(spread, medium.impedance_error))
-        interval, arrived = (speed - half, speed + half), 0.5 * speed
+        share = float(np.hypot(channel.uncertainty, medium.impedance_error)) * speed
+        half = COVERAGE * float(np.hypot(share, np.sqrt(2.0) * channel.noise / medium.impedance))
+        between = _between(values, top) / medium.impedance
+        interval, arrived = (speed - half, speed + float(np.hypot(half, between))), 0.5 * speed
     return Snap(
         channel=channel.name,
         start=event.start,
         peak_time=event.stop,
         peak=peak,
-        peak_interval=(peak - COVERAGE * error, peak + COVERAGE * error),
+        peak_interval=(peak - below, peak + above),
         rise_time=high - low,
         rise_resolved=bool((high - low) * channel.rate >= FEWEST_INTERVALS),
         impulse=_impulse(time, values, event.start, at_peak, peak),
@@ -103,11 +119,24 @@ def _measured(channel: Channel, event: Event, following: float, medium: Medium |
     )
 
 
-def _steepest(time: FloatArray, values: FloatArray, span: float) -> float:
-    """Return the largest increase within a span of time [N]; over one sampling interval at least."""
+def _between(values: FloatArray, top: int) -> float:
+    """Return how far the tension may rise above a sample between it and its neighbours [N]."""
+    around = values[max(top - AROUND, 0) : top + AROUND + 1]
+    return BETWEEN * float(np.max(np.abs(np.diff(around, 2)), initial=0.0))
+
+
+def _vying(values: FloatArray, peak: float, noise: float) -> float:
+    """Return what noise adds at most to the largest of the samples about as high as the peak [N]."""
+    count = max(int(np.count_nonzero(values >= peak - VYING * noise)), 1)
+    return noise * NormalDist().inv_cdf(NormalDist().cdf(COVERAGE) ** (1.0 / count))
+
+
+def _steepest(time: FloatArray, values: FloatArray, span: float) -> tuple[float, int]:
+    """Return the largest increase within a span of time [N] and its top; one sampling interval at least."""
     last = np.searchsorted(time, time + span, "right") - 1
     last = np.minimum(np.maximum(last, np.arange(time.size) + 1), time.size - 1)
-    return float(np.max(values[last] - values))
+    steepest = int(np.argmax(values[last] - values))
+    return float(values[last[steepest]] - values[steepest]), int(last[steepest])
 
 
 def _first_above(time: FloatArray, values: FloatArray, level: float, last: int) -> float:

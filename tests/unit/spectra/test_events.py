@@ -56,6 +56,31 @@ def test_a_snap_is_the_peak_after_retightening(channel: Maker) -> None:
     assert snap.value == pytest.approx(13.0, abs=0.05)
 
 
+def test_a_rise_that_outlasts_the_span_is_followed_to_its_top(channel: Maker) -> None:
+    time = np.arange(4_000) / RATE
+    since = time - 1.5
+    # half a sine of 0.6 s: at 0.25 s it still rises, its top is at 0.3 s
+    pulse = 8.0 * np.sin(np.pi * since / 0.6)
+    tension = np.where((since > 0.0) & (since < 0.6), pulse, np.where(time < 1.0, 4.0, 0.0))
+    # later it grows again, to more; that is not this snap
+    tension += np.where(time > 2.5, 12.0 * np.sin(np.pi * (time - 2.5)), 0.0) * (time < 3.5)
+    noise = 0.02 * np.random.default_rng(5).standard_normal(time.size)
+    events = find_events(channel(time, tension + noise, noise=0.02), 0.02)
+    first = next(event for event in events if event.kind == "snap")
+    assert first.stop == pytest.approx(1.8, abs=0.03)
+    assert first.value == pytest.approx(8.0, abs=0.08)
+
+
+def test_bouncing_after_the_span_is_another_top(channel: Maker) -> None:
+    time = np.arange(4_000) / RATE
+    since = np.maximum(time - 1.5, 0.0)
+    # a mean that grows for a second, and a bounce of 80 ms on it that falls by more than a tenth
+    tension = np.where(time < 1.0, 4.0, 8.0 * since * (1.0 - 0.5 * np.cos(2.0 * np.pi * since / 0.08)))
+    (snap,) = [event for event in find_events(channel(time, tension), 0.02) if event.kind == "snap"]
+    # tops near 40, 120, 200 and 280 ms: the last is where the rise at 250 ms leads to
+    assert snap.stop == pytest.approx(1.5 + 0.2815, abs=0.004)
+
+
 def test_a_flagged_spike_is_no_snap(channel: Maker) -> None:
     time = np.arange(3_000) / RATE
     tension = np.where((time > 1.0) & (time < 1.5), 0.0, 4.0)

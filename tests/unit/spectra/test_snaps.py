@@ -39,6 +39,52 @@ def test_a_half_sine_pulse_has_its_own_rise_and_impulse(channel: Maker) -> None:
     assert snap.front == snap.peak
 
 
+@pytest.mark.parametrize("samples", [4, 6, 12])
+def test_intervals_hold_a_peak_between_two_samples(channel: Maker, samples: int) -> None:
+    random = np.random.default_rng(11)
+    peak, rate, noise = 20.0, 1000.0, 0.015
+    width, held, fast, short = samples / rate, 0, 0, 0
+    for _ in range(60):
+        time = np.arange(2000) / rate
+        begin = 1.2 + random.uniform(0.0, 1.0 / rate)
+        pulse = (peak - 2.0) * np.sin(np.pi * np.clip((time - begin) / width, 0.0, 1.0))
+        tension = np.where(time < 1.0, 5.0, np.where(time < begin, 0.0, 2.0 + pulse))
+        tension += noise * random.standard_normal(time.size)
+        record = channel(time, tension, noise=noise, uncertainty=1e-3)
+        (snap,) = measured_snaps(record, find_events(record, 0.02), MEDIUM)
+        held += snap.peak_interval[0] <= peak <= snap.peak_interval[1]
+        short += snap.peak + 1.96 * math.hypot(noise, 1e-3 * peak) < peak
+        assert snap.speed_interval is not None
+        # the whole rise is within one round trip
+        fast += snap.speed_interval[0] <= peak / IMPEDANCE <= snap.speed_interval[1]
+    assert held >= 57
+    assert fast >= 57
+    # noise and scale alone would not do, and the more samples there are the less is added
+    assert short > 3
+    assert snap.peak_interval[1] - snap.peak < 0.8 * peak / samples
+
+
+def test_the_interval_allows_for_the_luck_of_the_largest_of_many(channel: Maker) -> None:
+    random = np.random.default_rng(12)
+    level, noise, held = 10.0, 0.05, 0
+    for _ in range(60):
+        time = np.arange(2000) / 1000.0
+        tension = np.where(time < 0.5, 5.0, np.where(time < 1.0, 0.0, level))
+        tension = tension + noise * random.standard_normal(time.size)
+        record = channel(time, tension, noise=noise)
+        (snap,) = measured_snaps(record, find_events(record, 0.02))
+        held += snap.peak_interval[0] <= level <= snap.peak_interval[1]
+    assert held >= 55
+
+
+def test_the_zero_of_the_cell_is_in_the_interval_of_a_peak(channel: Maker) -> None:
+    time = np.arange(2000) / 1000.0
+    tension = np.where(time < 0.5, 5.0, np.where(time < 1.0, 0.0, 5.0))
+    record = channel(time, tension, offset_uncertainty=0.1)
+    (snap,) = measured_snaps(record, find_events(record, 0.02))
+    assert snap.peak - snap.peak_interval[0] == pytest.approx(0.196, rel=1e-3)
+
+
 @pytest.mark.parametrize(("slack", "speed"), [(1e-4, 1.0), (1e-3, 2.0), (3e-3, 2.0)])
 def test_a_cable_pulled_taut_tells_the_speed_of_the_pull(channel: Maker, slack: float, speed: float) -> None:
     strain = 0.5 * (-slack + math.sqrt(slack**2 + 4.0 * speed**2 / SPEED**2))

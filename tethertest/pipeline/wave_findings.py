@@ -27,6 +27,8 @@ from tethertest.spectra.waves import Medium, Station, section_waves, separated_w
 SETTLE: Final = 0.2
 #: fronts of one knock lie within this many axial traverses and sampling intervals of the slowest sensor
 SPAN: Final = 2.0
+#: a gauge this near to a station of the field is at it, fraction of the length
+SAME_PLACE: Final = 1e-9
 #: kinds of channels that see an axial wave
 FORCES: Final = ("tension", "strain")
 
@@ -123,7 +125,11 @@ def replayed_waves(
     largest = largest_tension(response, start, window)
     if drive is None or window is None or "velocity" not in response.fields:
         return WaveFindings(largest=largest, remarks=("no drive: the replayed waves are not separated",))
-    if any(stop + start > window.start for spans in response.slack.values() for _, stop in spans):
+    if any(
+        first + start < window.stop and last + start > window.start
+        for spans in response.slack.values()
+        for first, last in spans
+    ):
         text = "the replayed cable goes slack in the window: waves do not superpose, none separated"
         return WaveFindings(largest=largest, remarks=(text,))
     medium = medium_of(response.scene, rig)
@@ -159,14 +165,29 @@ def largest_tension(response: Response, start: float = 0.0, window: Window | Non
     relative = math.hypot(budget.numerical, budget.model or 0.0, budget.spread or 0.0)
     dynamic = max(value - float(field.maximum[0, column]), 0.0)
     near = field.position[along >= value - relative * dynamic]
+    begin = float(field.time[inside][row])
     return LargestTension(
         at=float(field.position[column]),
-        time=float(time[inside][row]),
+        time=_instant(response, float(field.position[column]), begin) + start,
         value=value,
         at_interval=(float(near.min()), float(near.max())),
         bottom=float(along[0]),
         top=float(along[-1]),
     )
+
+
+def _instant(response: Response, at: float, begin: float) -> float:
+    """Return when the tension at a place is largest within the field's bin that begins at a time [s].
+
+    A gauge there tells it to one row; elsewhere it is the middle of the bin.
+    """
+    field = response.field
+    width = float(field.time[1] - field.time[0]) if field.time.size > 1 else response.scene.output.duration
+    rows = np.flatnonzero((response.time >= begin) & (response.time <= begin + width))
+    gauge = int(np.argmin(np.abs(response.gauges - at)))
+    if rows.size == 0 or abs(float(response.gauges[gauge]) - at) > SAME_PLACE:
+        return begin + 0.5 * width
+    return float(response.time[rows[int(np.argmax(response.tension[rows, gauge]))]])
 
 
 def _knock(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,8 @@ from tethertest.signal.blocks import Blocks
 from tethertest.signal.tall import tall_cross, tall_times
 
 FloatArray = npt.NDArray[np.float64]
+#: a variance inflated so many times by the other columns is nothing but round-off
+_INFLATED: Final = 1e8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,7 +134,7 @@ def fit_sinusoids(
     Raises
     ------
     ValueError
-        More coefficients than blocks with samples.
+        More coefficients than blocks with samples, or frequencies that these samples do not tell apart.
     """
     pairs = [sinusoid_pair(blocks, float(frequency), origin) for frequency in frequencies]
     design = np.column_stack([trend_columns(blocks, degree), *pairs])
@@ -139,7 +142,11 @@ def fit_sinusoids(
         message = f"{np.count_nonzero(blocks.weights)} blocks for {design.shape[1]} coefficients"
         raise ValueError(message)
     weighted = design * blocks.weights[:, None]
-    inverse = np.asarray(np.linalg.inv(tall_cross(design, weighted)), dtype=np.float64)
+    normal = tall_cross(design, weighted)
+    inverse = np.asarray(np.linalg.inv(normal), dtype=np.float64)
+    if not np.max(np.diag(normal) * np.diag(inverse)) < _INFLATED:
+        message = "the samples do not tell the frequencies apart: holes at even steps fold them on each other"
+        raise ValueError(message)
     coefficients = inverse @ tall_cross(weighted, blocks.values)
     residuals = np.where(blocks.weights > 0.0, blocks.values - tall_times(design, coefficients), 0.0)
     return SinusoidFit(

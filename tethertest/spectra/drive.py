@@ -54,7 +54,8 @@ class _Tangent:
     blocks: Blocks
     orders: tuple[Fraction, ...]
     sinusoids: SinusoidFit
-    slope: FloatArray  #: (b,) derivative of the model by frequency, free of the other coefficients
+    slope: FloatArray  #: (b,) weighted derivative of the model by frequency, free of the other coefficients
+    stiffness: float  #: of the weighted squares against a change of frequency
     variance: float  #: noise of one block at the fundamental
 
 
@@ -191,7 +192,9 @@ def _tangent(blocks: Blocks, frequency: float, origin: float, variance: float | 
     slope = sinusoids.without_trace(slope)
     if variance is None:
         variance = float(sinusoids.weights @ sinusoids.residuals**2) / blocks.time.size
-    return _Tangent(blocks, orders, sinusoids, slope * blocks.weights, max(variance, SMALLEST_VARIANCE))
+    weighted = slope * blocks.weights
+    stiffness = float(slope @ weighted)
+    return _Tangent(blocks, orders, sinusoids, weighted, stiffness, max(variance, SMALLEST_VARIANCE))
 
 
 def _seen(fit: OrderFit) -> _Seen:
@@ -204,12 +207,12 @@ def _seen(fit: OrderFit) -> _Seen:
 def _step(tangents: Sequence[_Tangent]) -> float:
     """Return the Gauss-Newton step [Hz], channels weighted by their noise."""
     pull = sum(float(item.slope @ item.sinusoids.residuals) / item.variance for item in tangents)
-    stiffness = sum(float(item.slope @ item.slope) / item.variance for item in tangents)
+    stiffness = sum(item.stiffness / item.variance for item in tangents)
     return pull / stiffness if stiffness > 0.0 else 0.0
 
 
 def _standard_error(tangents: Sequence[_Tangent], shown: Sequence[_Seen]) -> float:
-    stiffness = sum(float(item.slope @ item.slope) / item.variance for item in tangents)
+    stiffness = sum(item.stiffness / item.variance for item in tangents)
     spread = 0.0
     for item, seen in zip(tangents, shown, strict=True):
         excess = max(1.0, seen.fit.noise.excess(seen.fit.drive)[0])

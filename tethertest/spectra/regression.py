@@ -133,7 +133,7 @@ def channel_blocks(channel: Channel, window: Window, frequency: float, mains: fl
     blocks = block_means(part.time, part.values, usable, float(wanted))
     if blocks.length * frequency < FEWEST_PERIODS:
         message = (
-            f"channel {channel.name!r}: {blocks.length:.3g} s hold {blocks.length * frequency:.2g} periods "
+            f"channel {channel.name!r}: {blocks.length:.3g} s hold {blocks.length * frequency:.3g} periods "
             f"of {frequency:.4g} Hz, expected at least {FEWEST_PERIODS:g}"
         )
         raise DataError(message, "choose a longer window")
@@ -186,7 +186,11 @@ def order_sinusoids(
             f"the usable samples fill {filled} blocks of {blocks.step:.3g} s, too few for {needed} numbers"
         )
         raise DataError(message, "choose another window, or mend the channel that lacks its samples")
-    return fitted, fit_sinusoids(blocks, frequencies, origin, TREND_DEGREE)
+    try:
+        return fitted, fit_sinusoids(blocks, frequencies, origin, TREND_DEGREE)
+    except ValueError as error:
+        remedy = "export the channel that lacks its samples by itself, at its own rate"
+        raise DataError(str(error), remedy) from error
 
 
 def with_noise(

@@ -80,3 +80,30 @@ def test_a_few_samples_in_a_long_window_are_too_few(channel: Maker, time: FloatA
     few = heave.with_flags(np.arange(time.size) % 400 > 1, Flag.OUT_OF_RANGE)
     with pytest.raises(DataError, match="too few"):
         fit_drive([few], window, 0.3)
+
+
+@pytest.mark.parametrize("kept", [0.5, 0.3])
+@pytest.mark.parametrize("even", [True, False])
+def test_holes_cost_the_frequency_its_error_and_no_more(
+    channel: Maker, time: FloatArray, window: Window, kept: float, even: bool
+) -> None:
+    random = np.random.default_rng(9)
+    errors = []
+    for _ in range(15):
+        noise = 0.1 * random.standard_normal(2048)
+        there = np.arange(2048) % round(1.0 / kept) == 0 if even else random.random(2048) < kept
+        record = channel(time, cosine(time, 0.25) + noise).with_flags(~there, Flag.MISSING)
+        fit = fit_drive([record], window, 0.25)
+        bound = np.sqrt(24.0 * 0.1**2 / ((2 * np.pi) ** 2 * 2048 * (2048.0**2 - 1) / 30.0**2) / there.mean())
+        assert fit.standard_error == pytest.approx(bound, rel=0.6)
+        errors.append((fit.frequency - 0.25) / fit.standard_error)
+    assert np.sqrt(np.mean(np.square(errors))) < 1.5
+
+
+def test_holes_that_fold_orders_on_each_other_are_refused(
+    channel: Maker, time: FloatArray, window: Window
+) -> None:
+    # a sample every second leaves half a hertz; blocks of the full rate would take orders up to four hertz
+    record = channel(time, cosine(time, 0.25)).with_flags(np.arange(2048) % 30 != 0, Flag.MISSING)
+    with pytest.raises(DataError, match=r"tell the frequencies apart|too few"):
+        fit_drive([record], window, 0.25)

@@ -16,6 +16,8 @@ from tethertest.spectra.tracking import Tracking
 #: highest order of the drive that is thought of as folding back from above half the sampling rate: the kinks
 #: of a tension that snaps taut carry that far
 HIGHEST_FOLDED: Final = 200
+#: whole orders up to this one any tension may have: above half the sampling rate they fold back unseen
+LIKELY_ORDER: Final = 4
 #: the highest orders in the band are this many times larger than what may have folded back from beyond it
 CARRIED_RATIO: Final = 3.0
 
@@ -68,10 +70,19 @@ def leakage_floor(
 def folded_order(fit: OrderFit, order: Fraction, amplitude: Amplitude, rate: float) -> Fraction | None:
     """Return the order above half the sampling rate that folds onto this one, if the series has such orders.
 
-    It has where the orders fitted as companions, next below what the rate carries, are clearly larger than
-    the line.
+    It may have the lowest whole orders always, and others where the orders fitted as companions, next below
+    what the rate carries, are clearly larger than the line.
     """
     own = float(order) * fit.drive
+
+    def folds(candidate: Fraction) -> bool:
+        frequency = float(candidate) * fit.drive
+        folded = abs(frequency - rate * round(frequency / rate))
+        return 2.0 * frequency > rate and abs(folded - own) * fit.blocks.length < RESOLUTION
+
+    for likely in range(2, LIKELY_ORDER + 1):
+        if folds(Fraction(likely)):
+            return Fraction(likely)
     for denominator in (1, 2):
         carried = [
             fit.sinusoids.amplitude(index)
@@ -82,8 +93,6 @@ def folded_order(fit: OrderFit, order: Fraction, amplitude: Amplitude, rate: flo
             continue
         first = int(0.5 * rate / fit.drive * denominator) + 1
         for numerator in range(first, HIGHEST_FOLDED * denominator + 1):
-            folding = numerator * fit.drive / denominator
-            folded = abs(folding - rate * round(folding / rate))
-            if abs(folded - own) * fit.blocks.length < RESOLUTION:
+            if folds(Fraction(numerator, denominator)):
                 return Fraction(numerator, denominator)
     return None

@@ -9,6 +9,7 @@ from typing import Final
 from tethertest.records.lines import Expectation, LineVerdict
 from tethertest.records.response import NaturalFrequency
 from tethertest.spectra.inputs import explain_by_input
+from tethertest.spectra.leaks import LIKELY_ORDER
 from tethertest.spectra.regression import Amplitude, stands_out
 from tethertest.spectra.stroboscope import Section
 from tethertest.spectra.tracking import GATE, LOOSE_CYCLES, Tracking
@@ -75,7 +76,7 @@ def judge(evidence: Evidence) -> Judged:
         fails giving the verdict.
     """
     size = _size(evidence)
-    if not evidence.significant:
+    if not evidence.significant and not (evidence.order == 1 and evidence.saturated):
         return LineVerdict.NONE, (
             f"not significant (p = {evidence.adjusted:.2g} after Holm); amplitudes from "
             f"{DETECTABLE * evidence.amplitude.standard_error:.2g} {evidence.unit} would show".replace(
@@ -136,8 +137,18 @@ def _whole_order(evidence: Evidence) -> Judged:
         beside = f"the natural frequency {near.name!r} ({near.frequency:.4g} Hz) is next to it"
         if tracking.decays:
             return LineVerdict.NATURAL_TRANSIENT, f"decays: {_lost(tracking)}; {beside}"
-        return LineVerdict.HARMONIC, f"steady multiple of the drive, not made by the crank; {beside}"
-    return LineVerdict.HARMONIC, "multiple of the drive, not made by the crank"
+        return LineVerdict.HARMONIC, f"steady multiple of the drive, {_made(evidence)}; {beside}"
+    return LineVerdict.HARMONIC, f"multiple of the drive, {_made(evidence)}"
+
+
+def _made(evidence: Evidence) -> str:
+    """Say whether the crank makes a whole order, as far as that is known."""
+    told = evidence.expectation
+    if evidence.is_input:
+        return "in the bottom motion itself"
+    if told.input_lines is not None or str(evidence.order) in told.crank_orders:
+        return "not made by the crank"
+    return "made by the cable or by the drive: no bottom motion was measured, and no crank is known"
 
 
 def _broken_order(evidence: Evidence) -> Judged:
@@ -145,8 +156,13 @@ def _broken_order(evidence: Evidence) -> Judged:
     tracking = evidence.tracking
     if evidence.alias is not None:
         return LineVerdict.ALIAS, (
-            f"order {evidence.alias} folds here at {evidence.rate:.4g} Hz sampling, and the orders below it "
-            "are strong; log faster or filter before logging"
+            f"order {evidence.alias} folds here at {evidence.rate:.4g} Hz sampling, and "
+            + (
+                "any tension may have it"
+                if evidence.alias <= LIKELY_ORDER
+                else "the orders below it are strong"
+            )
+            + "; log faster or filter before logging"
         )
     if evidence.source is not None:
         return LineVerdict.LEAKAGE, f"explained by a line at {evidence.source:.4g} Hz that is not locked"
@@ -211,6 +227,12 @@ def _broken_order(evidence: Evidence) -> Judged:
     reason += f"; multitaper F = {second.f_value:.3g} (p = {second.p_value:.2g})"
     if evidence.section is not None:
         reason += f"; stroboscopic section D1/D2 = {evidence.section.ratio:.3g}"
+    if evidence.expectation.input_lines is None:
+        reason += (
+            "; no bottom motion was measured: a drive that itself moves at this order, as a worn gear or "
+            "belt does, would look the same"
+        )
+        return LineVerdict.SUBHARMONIC, reason
     return LineVerdict.SUBHARMONIC, f"not in the input, {reason}"
 
 

@@ -207,6 +207,17 @@ def test_hum_folded_onto_an_order_is_the_mains(channel: Maker) -> None:
     assert "50 Hz" in second.reason
 
 
+def test_the_second_order_folded_onto_a_half_is_an_alias(channel: Maker) -> None:
+    # 10 Hz sampling of a 4 Hz drive: order 2 at 8 Hz shows at 2 Hz, order 1/2
+    time = np.arange(1200) / 10.0
+    noise = 0.1 * np.random.default_rng(4).standard_normal(1200)
+    record = channel(time, 10.0 * cosine(time, 4.0) + cosine(time, 8.0) + noise)
+    half = analysed(record, Window(0.0, time[-1]), 4.0).line("1/2")
+    assert half is not None
+    assert half.verdict is LineVerdict.ALIAS
+    assert "order 2 folds here" in half.reason
+
+
 def test_a_high_order_folded_onto_a_third_is_an_alias(channel: Maker) -> None:
     # 100 Hz sampling of a 7.5 Hz drive with sharp peaks: order 13 at 97.5 Hz shows at 2.5 Hz, order 1/3
     time = np.arange(3000) / 100.0

@@ -4,14 +4,23 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Mapping
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
+from tethertest.records.lines import LineVerdict
 from tethertest.render.write import write_files
 from tethertest.studies.line_calibration.files import calibration_files
 from tethertest.studies.line_calibration.kinds import KINDS
 from tethertest.studies.line_calibration.power import AMPLITUDES, NOISES, coverage, found_at
-from tethertest.studies.line_calibration.rates import rates
+from tethertest.studies.line_calibration.rates import Rates, rates
 from tethertest.studies.line_calibration.table import calibration_table, coverage_met, found_met
+
+
+def _counts(number: int, records: int) -> tuple[int, int, int, int, Mapping[LineVerdict, int]]:
+    """Return what became of the records of one kind; the kind itself does not pass between processes."""
+    item = rates(KINDS[number], records)
+    return item.records, item.false, item.quiet, item.undetermined, item.halves
 
 
 def main(arguments: list[str]) -> int:
@@ -19,10 +28,15 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="line_calibration", description=__doc__)
     parser.add_argument("records", type=int, help="records of each kind")
     parser.add_argument("-o", "--output", type=Path, help="folder for the files")
+    parser.add_argument("--jobs", type=int, default=1, help="processes; the tables do not depend on them")
     settings = parser.parse_args(arguments)
-    nulls = [rates(kind, settings.records) for kind in KINDS]
-    found = [found_at(amplitude, settings.records) for amplitude in AMPLITUDES]
-    covered = [coverage(name, noise, allowed, settings.records) for name, noise, allowed in NOISES]
+    with ProcessPoolExecutor(settings.jobs) as pool:
+        count = settings.records
+        counted = [pool.submit(_counts, number, count) for number in range(len(KINDS))]
+        seen = [pool.submit(found_at, amplitude, count) for amplitude in AMPLITUDES]
+        held = [pool.submit(coverage, *noise, count) for noise in NOISES]
+        nulls = [Rates(kind, *item.result()) for kind, item in zip(KINDS, counted, strict=True)]
+        found, covered = [item.result() for item in seen], [item.result() for item in held]
     table = calibration_table(nulls, found, covered)
     sys.stdout.write(table)
     if settings.output is not None:

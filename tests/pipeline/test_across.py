@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tethertest.cli import app
+from tethertest.cli.across import _print
 from tethertest.errors import TethertestError
 from tethertest.pipeline.across import analyze_across, gathered
 from tethertest.pipeline.analysis_options import Options
@@ -110,6 +111,41 @@ def test_runs_that_differ_in_two_settings_are_on_no_common_curve(there_and_back:
     again = gathered("runs", [*there_and_back.runs, amplitude])
     by_amplitude = [group for group in again.groups if group.against == "amplitude"]
     assert [group.runs for group in by_amplitude] == [("run05", "run33", "run91")]
+
+
+def test_a_slip_of_the_frequency_in_run_toml_takes_no_run_from_its_curve(there_and_back: Across) -> None:
+    other = part(91, 0.2, 1.0, 0.0, amplitude=0.2, nominal_amplitude=0.2, nominal_frequency=0.22)
+    again = gathered("runs", [*there_and_back.runs, other])
+    (group,) = (group for group in again.groups if group.against == "amplitude")
+    assert group.runs == ("run05", "run33", "run91")
+    assert group.fixed == pytest.approx(0.2)
+
+
+def test_the_largest_amplitude_is_one_of_a_line_that_is_there_and_judged() -> None:
+    halves = (0.5, 0.009, 0.3)
+    parts = [part(place, 0.2 + 0.1 * place, 1.0, half) for place, half in enumerate(halves)]
+    (channel,) = parts[0].channels
+    parts[0] = replace(parts[0], channels=(replace(channel, damage="half the window is missing"),))
+    found = across_summary(gathered("runs", parts))
+    largest = {curve["order"]: curve["largest"] for curve in found["curves"]}
+    assert (largest["1/2"]["run"], largest["1/2"]["amplitude"]) == ("run02", 0.3)
+    # what is there in the damaged run alone is on no other
+    parts[2] = part(2, 0.4, 1.0, 0.009)
+    found = across_summary(gathered("runs", parts))
+    assert {curve["order"]: curve["largest"] for curve in found["curves"]}["1/2"] is None
+
+
+def test_the_terminal_says_where_a_branch_has_no_line(capsys: pytest.CaptureFixture[str]) -> None:
+    """An order that only the sweep up shows is on the sweep down too, at its limits."""
+    count = FREQUENCIES.size
+    # the run at the turn is on both sweeps
+    halves = (*np.full(count - 1, 0.3), 0.009)
+    there = [part(place, float(FREQUENCIES[place]), 1.0, half) for place, half in enumerate(halves)]
+    back = [part(count + place, float(FREQUENCIES[-2 - place]), 1.0, 0.009) for place in range(count - 1)]
+    _print(across_summary(gathered("runs", [*there, *back])))
+    rows = [line for line in capsys.readouterr().out.splitlines() if line.split()[1:2] == ["1/2"]]
+    # the loop of both comes last
+    assert [(row.split()[2], "no line" in row) for row in rows[:2]] == [("up", False), ("down", True)]
 
 
 def test_the_folder_has_a_page_numbers_and_figures(there_and_back: Across, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tethertest.conditioning.plateaus import with_plateaus_flagged
+from tethertest.conditioning.plateaus import plateaus_of, with_plateaus_flagged
 from tethertest.conditioning.stamps import audited as audited_in_memory
 from tethertest.errors import DataError, TethertestError
 from tethertest.pipeline.conditioned import conditioned, read_logs
@@ -19,7 +19,6 @@ from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.gather import gathered
 from tethertest.pipeline.long_runs.ingest import Sources, ingest_long
 from tethertest.pipeline.long_runs.noise import quantum_of, white_noise_of
-from tethertest.pipeline.long_runs.plateaus import plateaus_of
 from tethertest.pipeline.long_runs.record import record_of
 from tethertest.pipeline.stored import store_header
 from tethertest.readers import load_run
@@ -187,16 +186,17 @@ def plateau_channel(kind: str) -> Channel:
 def test_plateaus_across_blocks_are_those_of_the_whole(kind: str, block: int) -> None:
     channel = plateau_channel(kind)
 
-    def read(start: int, stop: int) -> Channel:
-        part = slice(start, stop)
-        return replace(
-            channel, time=channel.time[part], values=channel.values[part], flags=channel.flags[part]
-        )
+    def read(start: int, stop: int) -> tuple[np.ndarray, np.ndarray]:
+        return channel.time[start:stop], channel.values[start:stop]
+
+    def piece(start: int, stop: int) -> Channel:
+        time, values = read(start, stop)
+        return replace(channel, time=time, values=values, flags=channel.flags[start:stop])
 
     expected = with_plateaus_flagged(channel)
-    found = plateaus_of(read, 20_000, block, lambda: white_noise(channel.values))
+    found = plateaus_of(read, 20_000, block, kind)
     flags = np.concatenate(
-        [found.marked(read(start, start + block), start).flags for start in range(0, 20_000, block)]
+        [found.marked(piece(start, start + block), start).flags for start in range(0, 20_000, block)]
     )
     assert np.array_equal(flags, expected.flags)
     assert (flags & Flag.STUCK).any()

@@ -90,7 +90,9 @@ def _damages(run: dict[str, Any]) -> list[str]:
         if channel["damage"] and channel["side"] == "measured":
             reasons.setdefault(channel["damage"], []).append(channel["name"])
     said = [f"not judged: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
-    return said + [remark for remark in run["remarks"] if remark.startswith("not replayed")]
+    told = [remark for remark in run["remarks"] if remark.startswith(("not replayed", "run.toml:"))]
+    # what keeps every channel from being judged is said above
+    return said + [remark for remark in told if not any(remark.endswith(reason) for reason in reasons)]
 
 
 def _print_curves(curves: list[dict[str, Any]], against: str) -> None:
@@ -98,7 +100,6 @@ def _print_curves(curves: list[dict[str, Any]], against: str) -> None:
     for curve in curves:
         points = curve["points"]
         settings = sorted({float(f"{point['setting']:.3g}") for point in points})
-        best = max(points, key=lambda point: float(point["amplitude"]))
         unit = "" if curve["unit"] == "1" else f" {curve['unit']}"
         steps = [
             f"{step['verdict']} {step['interval'][0]:.4g} to {step['interval'][1]:.4g} {_UNITS[against]}"
@@ -110,7 +111,7 @@ def _print_curves(curves: list[dict[str, Any]], against: str) -> None:
                 curve["order"],
                 curve["direction"],
                 f"{len(settings)}, {settings[0]:.3g} to {settings[-1]:.3g}",
-                f"{best['amplitude']:.4g}{unit} ± {best['standard_error']:.2g} at {best['setting']:.4g}",
+                _largest(curve, unit),
                 "; ".join(steps) or (curve["no_steps"] or "none"),
             )
         )
@@ -121,6 +122,13 @@ def _print_curves(curves: list[dict[str, Any]], against: str) -> None:
                 f"  {curve['channel']} order {curve['order']} {curve['direction']}: {step['verdict']} "
                 f"{step['amplitudes'][0]:.4g} to {step['amplitudes'][1]:.4g}: {step['reason']}"
             )
+
+
+def _largest(curve: dict[str, Any], unit: str) -> str:
+    point = curve["largest"]
+    if point is None:
+        return "none sure" if any(point["found"] for point in curve["points"]) else "no line"
+    return f"{point['amplitude']:.4g}{unit} ± {point['standard_error']:.2g} at {point['setting']:.4g}"
 
 
 def _print_loops(loops: list[dict[str, Any]], against: str) -> None:

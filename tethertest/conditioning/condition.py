@@ -12,6 +12,7 @@ from tethertest.conditioning.cross_check import cross_findings, gains
 from tethertest.conditioning.flags import flag_findings, sensor_of, with_excludes, with_range_flagged
 from tethertest.conditioning.guide import Guide
 from tethertest.conditioning.hum import with_hum_flagged
+from tethertest.conditioning.inertia import cable_inertia
 from tethertest.conditioning.load_cells import calibrated
 from tethertest.conditioning.logged import LoggedChannels, as_logged
 from tethertest.conditioning.plateaus import with_plateaus_flagged
@@ -113,8 +114,9 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
     if windows.steady is not None:
         frequency = guide.drive_frequency or run.file.drive.frequency
         adrift = {item.subject for item in findings if item.kind == "clock_not_aligned"}
-        compared = gains(ordered, run.rig, windows.steady, guide.static_tension, frequency, adrift)
-        findings += cross_findings(compared, run.rig)
+        inertia = cable_inertia(run, ordered, windows.steady, frequency)
+        compared = gains(ordered, run.rig, windows.steady, guide.static_tension, inertia, adrift)
+        findings += cross_findings(compared, run.rig, inertia.doubt)
     return ConditionedRun(
         tuple(ordered), tuple(fits), tuple(findings), windows.rest_before, windows.rest_after, windows.steady
     )

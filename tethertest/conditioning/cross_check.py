@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tethertest.conditioning.inertia import Inertia
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, Window
 from tethertest.records.rig import Rig
@@ -65,7 +66,7 @@ def gains(
     rig: Rig,
     window: Window,
     static: Mapping[str, float],
-    frequency: float | None,
+    inertia: Inertia,
     unaligned: Collection[str] = (),
 ) -> tuple[Gain, ...]:
     """Return the gain of every grating against each load cell, and against both where there are two.
@@ -75,15 +76,15 @@ def gains(
     Parameters
     ----------
     channels : sequence of Channel
-        Conditioned tensions [N], strains and displacements [m] on one clock.
+        Conditioned tensions [N] and strains on one clock.
     rig : Rig
-        Axial stiffness, mass of the cable, uncertainties.
+        Axial stiffness, uncertainties.
     window : Window
         Where to compare.
     static : mapping
         Tension at rest by load cell [N].
-    frequency : float or None
-        Of the drive [Hz], for what the cable's own inertia adds between grating and load cell.
+    inertia : Inertia
+        What the cable's own inertia adds between its ends.
     unaligned : collection of str
         Clocks that could not be aligned: their gratings are compared by the size of their motion alone.
     """
@@ -93,15 +94,9 @@ def gains(
     cells = [item for item in channels if item.kind == "tension" and item.at is not None]
     cells = sorted(cells, key=lambda item: item.at or 0.0)
     strains = [item for item in channels if item.kind == "strain" and item.at is not None]
-    heave = next((item for item in channels if item.kind == "displacement"), None)
     edges = np.arange(window.start, window.stop, BLOCK)
     if edges.size <= FEWEST_BLOCKS:
         return ()
-    inertia = 0.0
-    if heave is not None and frequency is not None:
-        moved = _blocks(heave, edges)
-        weight = rig.cable.mass_per_length * rig.cable.length
-        inertia = weight * (2.0 * np.pi * frequency) ** 2 * float(np.nanstd(moved))
     tensions = [_blocks(cell, edges) - static.get(cell.name, 0.0) for cell in cells]
     found: list[Gain] = []
     for strain in strains:
@@ -112,12 +107,12 @@ def gains(
             share = ((strain.at or 0.0) - (low.at or 0.0)) / max((high.at or 1.0) - (low.at or 0.0), 1e-9)
             between = (1.0 - share) * tensions[0] + share * tensions[-1]
             # a curved course of the tension between the ends, at most an eighth of what inertia adds
-            unknown = _unknown(strain, (low, high), rig, stiffness, inertia / 8.0)
+            unknown = _unknown(strain, (low, high), rig, stiffness, inertia.force / 8.0)
             item = _gain(strain.name, (low, high), values, between, unknown, adrift=adrift)
             found += [item] if item else []
         for cell, tension in zip(cells, tensions, strict=True):
             away = abs((strain.at or 0.0) - (cell.at or 0.0))
-            unknown = _unknown(strain, (cell,), rig, stiffness, inertia * away)
+            unknown = _unknown(strain, (cell,), rig, stiffness, inertia.force * away)
             item = _gain(strain.name, (cell,), values, tension, unknown, adrift=adrift)
             found += [item] if item else []
     if len(cells) > 1:
@@ -125,7 +120,7 @@ def gains(
         unknown = _Unknown(
             low.noise / np.sqrt(max(BLOCK * low.rate, 1.0)),
             float(np.hypot(low.uncertainty, high.uncertainty)),
-            inertia * ((high.at or 1.0) - (low.at or 0.0)),
+            inertia.force * ((high.at or 1.0) - (low.at or 0.0)),
             float(np.hypot(low.offset_uncertainty, high.offset_uncertainty)),
         )
         item = _gain(low.name, (high,), tensions[0], tensions[-1], unknown)
@@ -133,7 +128,7 @@ def gains(
     return tuple(found)
 
 
-def cross_findings(found: Sequence[Gain], rig: Rig) -> tuple[Finding, ...]:
+def cross_findings(found: Sequence[Gain], rig: Rig, doubt: str = "") -> tuple[Finding, ...]:
     """Return a note with all gains, and a warning for each disagreement with what would explain it.
 
     Parameters
@@ -142,21 +137,23 @@ def cross_findings(found: Sequence[Gain], rig: Rig) -> tuple[Finding, ...]:
         As `gains` returns them.
     rig : Rig
         For gauge factors.
+    doubt : str
+        Why the cable's inertia, and so the uncertainty of the gains, is not better known.
     """
     kinds = {sensor.name: sensor.kind for sensor in rig.sensor}
     pair = next((item for item in found if kinds.get(item.grating) == "tension"), None)
     # load cells that contradict each other have no tension between them
     torn = pair is not None and not pair.agrees
     optical = [item for item in found if item is not pair and not (torn and len(item.cells) > 1)]
-    findings = _of_gratings(optical, rig) if optical else []
+    findings = _of_gratings(optical, rig, doubt) if optical else []
     named = any(item.kind == KIND for item in findings)
     if pair is not None and torn and not named:
         words = f"{pair.grating} and {pair.cells[0]} disagree: the lower one"
-        findings.append(_finding("load cells", words, [pair], rig))
+        findings.append(_finding("load cells", words, [pair], rig, doubt))
     return tuple(findings)
 
 
-def _of_gratings(found: Sequence[Gain], rig: Rig) -> list[Finding]:
+def _of_gratings(found: Sequence[Gain], rig: Rig, doubt: str) -> list[Finding]:
     best = {item.grating: item for item in reversed(found)}  # against both cells where there are two
     listed = ", ".join(
         f"{item.grating} {item.gain:.4g} +/- {COVERAGE * item.uncertainty:.2g} "
@@ -164,23 +161,26 @@ def _of_gratings(found: Sequence[Gain], rig: Rig) -> list[Finding]:
         for item in best.values()
     )
     text = f"axial stiffness times strain over tension, {COVERAGE:g} standard uncertainties: {listed}"
+    text += f"; {doubt}" if doubt else ""
     findings = [Finding("cross-check", "strain_over_tension", text, "note")]
     wrong = [item for item in best.values() if not item.agrees]
     cell = _wrong_cell(found)
     if cell is not None:
         mine = [item for item in found if item.cells == (cell,)]
-        findings.append(_finding(cell, f"all gratings disagree with {cell} alone: {PRODUCT}", mine, rig))
+        findings.append(
+            _finding(cell, f"all gratings disagree with {cell} alone: {PRODUCT}", mine, rig, doubt)
+        )
     elif len(wrong) == len(best) > 1:
         by = " by one factor" if _common(wrong) else ""
         words = f"all gratings disagree with the tension{by}: {PRODUCT}"
-        findings.append(_finding("cable", words, wrong, rig))
+        findings.append(_finding("cable", words, wrong, rig, doubt))
     else:
         words = f"strain and tension disagree: {PRODUCT}"
-        findings += [_finding(item.grating, words, [item], rig) for item in wrong]
+        findings += [_finding(item.grating, words, [item], rig, doubt) for item in wrong]
     return findings
 
 
-def _finding(subject: str, words: str, items: Sequence[Gain], rig: Rig) -> Finding:
+def _finding(subject: str, words: str, items: Sequence[Gain], rig: Rig, doubt: str) -> Finding:
     gain = float(np.median([item.gain for item in items]))
     spread = COVERAGE * float(np.median([item.uncertainty for item in items]))
     known = list(SLIPS)
@@ -195,6 +195,10 @@ def _finding(subject: str, words: str, items: Sequence[Gain], rig: Rig) -> Findi
     ]
     if fits:
         why = "explained by " + "; or ".join(fits)
+    elif doubt:
+        why = (
+            f"no slip of units explains it; look at the motion before gauge factors and calibrations: {doubt}"
+        )
     elif subject == "cable":
         why = "no slip of units explains it: look at axial_stiffness, then at gauge factors and calibrations"
     else:

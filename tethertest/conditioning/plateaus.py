@@ -1,9 +1,24 @@
-"""Runs of identical values: a saturated amplifier or a stuck channel."""
+"""Runs of identical values: a saturated amplifier or a stuck channel.
+
+Noise moves a value from sample to sample. So in a record whose noise exceeds half a digit, a run that is too
+long for chance is a fault: at the extremes of the record an amplifier at its limit, elsewhere a channel that
+stuck. Where digits are coarser than that, and on an encoder, the value may stand still rightly: at rest,
+where the cable is slack, and where a slow motion turns. There a channel was stuck only if it leaves its value
+by a leap or came to it too fast, and was at its limit only if the values next to the limit are passed too
+quickly for a motion that turns by itself. In between, where a value often repeats but noise is seen, the
+noise may be quieter at times: there a run without a leap must be much longer than all that are the channel's
+own. A slack cable rests: at the lowest value of coarse digits, and at a tension of exactly zero, as
+calculated records without noise have it.
+"""
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
+from tethertest.conditioning.repeats import IntArray, Reader, Repeats, repeats_of
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Flag
 from tethertest.signal.noise import quantum, white_noise
@@ -16,11 +31,38 @@ SHORTEST_PLATEAU = 4
 PLATEAU_WIDTH = 1e-6
 #: runs that noise makes this improbable in the whole record are none of its doing
 IMPROBABLE = 1e-6
-#: an encoder that stands still repeats itself rightly: only a leap of so many steps at the end of the run,
-#: or motion as fast before it, shows that it was stuck
-LEAP_STEPS = 20.0
+#: noise of half a digit turns a slow value back in three of ten samples or more, noise of a tenth in one;
+#: where fewer turn, the value may stand still. A fast value seldom turns either, but cannot stop so
+COARSE = 0.15
+#: where more than this share of the values repeats the one before, a run must be so many times longer than
+#: the longest that does not look stuck
+OFTEN, LONGER = 0.1, 5.0
+#: a leap, or motion as fast just before, that shows that a value which may stand still was stuck: in digits
+#: or standard deviations, of an encoder (it counts several at a time) and of any other channel
+ENCODER_LEAP, LEAP = 20.0, 5.0
 #: motion before the run is measured over this time [s]
 APPROACH = 0.1
+#: a parabola that just fills its last digit spends 0.41 of that time in the next digit, one that was cut off
+#: a digit and a half below its top 0.29; values closer than so many digits are in the next one
+TURN, NEXT_DIGIT = 0.3, 1.5
+#: noise and digits are measured in so many places, on so many samples in each
+PLACES, SAMPLES = 40, 4096
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plateaus:
+    """Which samples of a channel stand still and should not."""
+
+    saturated: IntArray  #: (n, 2) first and last sample
+    limits: FloatArray  #: values of the saturated runs: shorter touches are saturated too
+    stuck: IntArray  #: (n, 2)
+
+    def marked(self, channel: Channel, start: int = 0) -> Channel:
+        """Return a part of the channel, from sample `start` on, with its flags."""
+        size = channel.values.size
+        saturated = _inside(self.saturated, start, size) | np.isin(channel.values, self.limits)
+        flagged = channel.with_flags(saturated, Flag.SATURATED)
+        return flagged.with_flags(_inside(self.stuck, start, size), Flag.STUCK)
 
 
 def with_plateaus_flagged(channel: Channel) -> Channel:
@@ -29,59 +71,98 @@ def with_plateaus_flagged(channel: Channel) -> Channel:
     Parameters
     ----------
     channel : Channel
-        As logged, before any filter. A displacement (an encoder's counts) may stand still; any other
-        channel has noise that moves it.
+        As logged, before any filter.
     """
-    values = channel.values
-    first, last = _runs(values)
+
+    def read(start: int, stop: int) -> tuple[FloatArray, FloatArray]:
+        return channel.time[start:stop], channel.values[start:stop]
+
+    size = channel.time.size
+    return plateaus_of(read, size, size, channel.kind).marked(channel) if size > 1 else channel
+
+
+def plateaus_of(read: Reader, size: int, block: int, kind: str) -> Plateaus:
+    """Return where a channel is saturated or stuck.
+
+    Parameters
+    ----------
+    read : callable
+        The channel, as logged, on its own clock.
+    size, block : int
+        Its samples, and samples at once.
+    kind : str
+        Of the channel; a displacement (an encoder's counts) may stand still.
+    """
+    runs = repeats_of(read, size, block, lasting=SHORTEST_STUCK, samples=SHORTEST_PLATEAU)
+    encoder = kind == "displacement"
+    if not np.any(runs.long) and encoder:
+        return Plateaus(runs.pairs[:0], runs.level[:0], runs.pairs[:0])
+    digit, noise, turning = _resolution(read, size, runs)
+    coarse = turning < COARSE and digit > 0.0
+    width = PLATEAU_WIDTH * (runs.high - runs.low)
+    highest, lowest = runs.level >= runs.high - width, runs.level <= runs.low + width
+    repeated = runs.share(highest | lowest)
+    improbable = size * max(repeated, 1.0 / size) ** (runs.length - 1.0) < IMPROBABLE
+    slack = (runs.level == 0.0) & (kind == "tension")
+    if coarse:
+        slack |= runs.level <= runs.low + NEXT_DIGIT * digit
+    saturated = improbable & (highest | lowest) & (runs.length >= SHORTEST_PLATEAU) & ~slack & (not encoder)
+    if coarse:
+        for number in np.flatnonzero(saturated):
+            saturated[number] = not _turns(read, size, runs, int(number), digit)
+    limits = np.unique(runs.level[saturated])
+    stuck = runs.long & ~np.isin(runs.level, limits) & ~slack & (improbable | encoder)
+    if coarse or encoder or repeated > OFTEN:
+        leap = (ENCODER_LEAP if encoder else LEAP) * max(digit, noise)
+        own = float(np.max(runs.length[~stuck], initial=1.0))
+        believed = np.inf if coarse or encoder else LONGER * own
+        for number in np.flatnonzero(stuck & (runs.length <= believed)):
+            stuck[number] = _leaps(read, size, runs.pairs[number], leap)
+    return Plateaus(runs.pairs[saturated], limits, runs.pairs[stuck])
+
+
+def _resolution(read: Reader, size: int, runs: Repeats) -> tuple[float, float, float]:
+    """Return digit, white noise and share of turns of a channel where it does not stand still for long."""
+    count = min(PLACES, -(-size // SAMPLES))
+    standing = runs.pairs[runs.long]
+    parts = []
+    for start in np.linspace(0, max(size - SAMPLES, 0), count).astype(int).tolist():
+        values = read(start, min(start + SAMPLES, size))[1]
+        parts.append(values[np.isfinite(values) & ~_inside(standing, start, values.size)])
+    moving = np.concatenate(parts)
+    steps = np.diff(moving)
+    steps = steps[steps != 0.0]
+    turns = np.count_nonzero(steps[1:] * steps[:-1] < 0.0)
+    return quantum(moving), white_noise(moving), turns / max(moving.size, 1)
+
+
+def _turns(read: Reader, size: int, runs: Repeats, number: int, digit: float) -> bool:
+    """Return whether the values beside a run are those of a motion that turns by itself."""
+    first, last = runs.pairs[number].tolist()
     length = last - first + 1
-    if not length.size or channel.time.size < 2:
-        return channel
-    duration = channel.time[last] - channel.time[first]
-    long = duration >= SHORTEST_STUCK
-    if channel.kind == "displacement":
-        stuck = long & _leaps(channel, first, last)
-        return channel.with_flags(_mask(values.size, first[stuck], last[stuck]), Flag.STUCK)
-    short = ~long
-    repeated = float(np.sum(length[short] - 1)) / max(float(np.sum(length[short])), 1.0)
-    expected = values.size * max(repeated, 1.0 / values.size) ** (length - 1.0)
-    improbable = expected < IMPROBABLE
-    level = values[first]
-    width = PLATEAU_WIDTH * float(np.nanmax(values) - np.nanmin(values))
-    extreme = (level >= np.nanmax(values) - width) | (level <= np.nanmin(values) + width)
-    saturated = improbable & extreme & (length >= SHORTEST_PLATEAU)
-    stuck = improbable & long & ~saturated
-    if saturated.any():
-        # shorter touches of the same limit are saturated too
-        limits = np.unique(level[saturated])
-        saturated |= np.isin(level, limits)
-    flagged = channel.with_flags(_mask(values.size, first[saturated], last[saturated]), Flag.SATURATED)
-    return flagged.with_flags(_mask(values.size, first[stuck], last[stuck]), Flag.STUCK)
+    values = read(max(first - length, 0), min(last + 1 + length, size))[1]
+    away = np.abs(values - runs.level[number])
+    beside = (away > 0.0) & (away <= NEXT_DIGIT * digit)
+    return bool(np.count_nonzero(beside) >= TURN * length)
 
 
-def _runs(values: FloatArray) -> tuple[np.ndarray, np.ndarray]:
-    """Return first and last index of every run of identical finite values; single values are runs of one."""
-    same = np.concatenate(([False], np.diff(values) == 0.0))
-    first = np.flatnonzero(~same & np.isfinite(values))
-    ends = np.append(np.flatnonzero(~same)[1:], values.size) - 1
-    last = ends[np.isfinite(values[np.flatnonzero(~same)])]
-    return first, last
+def _leaps(read: Reader, size: int, pair: IntArray, leap: float) -> bool:
+    """Return whether a run ends with a leap, or follows motion too fast to have stopped by itself."""
+    first, last = pair.tolist()
+    _, end = read(last, min(last + 2, size))
+    if abs(end[-1] - end[0]) > leap:
+        return True
+    time, _ = read(max(first - 64, 0), min(first + 64, size))
+    rate = (time.size - 1) / (time[-1] - time[0])
+    reach = max(round(APPROACH * rate), 1)
+    _, before = read(max(first - reach, 0), first + 1)
+    return bool(abs(before[-1] - before[0]) > leap)
 
 
-def _leaps(channel: Channel, first: np.ndarray, last: np.ndarray) -> BoolArray:
-    """Return which runs end with a leap, or follow motion too fast to have stopped by itself."""
-    values = channel.values
-    step = max(quantum(values[np.isfinite(values)]), white_noise(values))
-    following = values[np.minimum(last + 1, values.size - 1)]
-    leap = np.abs(following - values[last]) > LEAP_STEPS * step
-    reach = max(round(min(APPROACH * channel.rate, values.size)), 1)
-    before = values[np.maximum(first - reach, 0)]
-    fast = np.abs(values[first] - before) > LEAP_STEPS * step
-    return np.asarray(leap | fast, dtype=bool)
-
-
-def _mask(size: int, first: np.ndarray, last: np.ndarray) -> BoolArray:
-    marks = np.zeros(size + 1, dtype=np.int64)
-    np.add.at(marks, first, 1)
-    np.add.at(marks, last + 1, -1)
+def _inside(pairs: IntArray, start: int, size: int) -> BoolArray:
+    """Return which of some samples, from `start` on, lie in any of the runs."""
+    near = pairs[(pairs[:, 1] >= start) & (pairs[:, 0] < start + size)] - start
+    marks: npt.NDArray[np.int64] = np.zeros(size + 1, dtype=np.int64)
+    np.add.at(marks, np.maximum(near[:, 0], 0), 1)
+    np.add.at(marks, np.minimum(near[:, 1] + 1, size), -1)
     return np.asarray(np.cumsum(marks)[:-1] > 0, dtype=bool)

@@ -26,6 +26,8 @@ FAR_AROUND, FAR_QUANTILE = 400, 0.985
 #: the neighbours of a spike differ from each other by less than this fraction of its height; at a step they
 #: do not
 NEIGHBOURS_AGREE = 0.4
+#: the same value so many times, each time alone, is a logger's word for a lost sample
+FEWEST_DROPOUTS = 3
 #: an axial wave needs this long from end to end: what another channel shows so close is no spike [s]
 WAVE_DELAY = 0.008
 #: height of the other channel's answer, in standard deviations of one of its samples
@@ -85,7 +87,27 @@ def _spikes(channel: Channel, values: FloatArray, sigma: float) -> BoolArray:
             block = slice(int(start), int(start) + width)
             if not spike[block].any() and _stands_alone(values, height, int(start), width):
                 spike[block] = True
-    return spike & ~_beside(~channel.usable)
+    return (spike | _dropouts(values, HEIGHT_SIGMAS * sigma, longest)) & ~_beside(~channel.usable)
+
+
+def _dropouts(values: FloatArray, least: float, longest: int) -> BoolArray:
+    """Return the samples of one value that stands apart again and again, beyond all that the signal reaches.
+
+    A logger that loses samples now and then writes the same number for each, often zero. Many of them hide
+    one another from a look at how high such heights are around.
+    """
+    dropout = np.zeros(values.size, dtype=bool)
+    for width in range(1, longest + 1):
+        for start in np.flatnonzero(_likely(values, _height(values, width), least, width)).tolist():
+            block = values[start : start + width]
+            dropout[start : start + width] |= bool(np.all(block == block[0]))
+    numbers, counts = np.unique(values[dropout], return_counts=True)
+    numbers = numbers[counts >= FEWEST_DROPOUTS]
+    rest = values[~dropout & ~np.isin(values, numbers)]
+    if not numbers.size or not rest.size:
+        return np.zeros(values.size, dtype=bool)
+    beyond = (numbers < np.min(rest)) | (numbers > np.max(rest))
+    return np.asarray(np.isin(values, numbers[beyond]), dtype=bool)
 
 
 def _likely(values: FloatArray, height: FloatArray, least: float, width: int) -> BoolArray:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from tethertest.records.channel import Channel, ConditionedRun, Finding
+from tethertest.records.channel import Channel, ConditionedRun, Finding, Window
 from tethertest.records.lines import DriveFit
 from tethertest.records.run import Run
 
 #: a stated frequency or amplitude farther than this from what was logged is a slip of the pen
 STATED_FREQUENCY = 0.02
 STATED_AMPLITUDE = 0.1
+#: kind of the finding that the motion is not as stated
+AMPLITUDE = "drive_amplitude"
 #: half the range of motion above which a run is driven, whatever its file says [m]
 STANDS_STILL = 2e-3
 #: range between these quantiles: spikes and marker taps are left out
@@ -34,12 +36,58 @@ def stated_findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) 
     return tuple(_findings(run, measured, drive))
 
 
+def drive_findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> tuple[Finding, ...]:
+    """Return what the run file states of the drive and the logs contradict.
+
+    Parameters
+    ----------
+    run : Run
+        The run file's drive.
+    measured : ConditionedRun
+        Its displacement is held against the stated amplitude.
+    drive : DriveFit or None
+        The drive as fitted.
+    """
+    return tuple(_of_drive(run, measured, drive))
+
+
+def stated_amplitude(run: Run) -> float | None:
+    """Return the amplitude of the bottom motion that the run file states [m]."""
+    return run.file.drive.radius or run.file.drive.amplitude
+
+
+def moves_otherwise(run: Run, heave: Channel | None, steady: Window | None) -> str | None:
+    """Return stated and logged amplitude of the motion in words, where one is not the other.
+
+    Parameters
+    ----------
+    run : Run
+        The run file's drive.
+    heave : Channel or None
+        The bottom displacement.
+    steady : Window or None
+        Where to look at it.
+    """
+    stated = stated_amplitude(run)
+    if stated is None or heave is None or steady is None:
+        return None
+    moved = half_range(heave.between(steady.start, steady.stop))
+    if moved is None or abs(moved / stated - 1.0) <= STATED_AMPLITUDE:
+        return None
+    key = "radius" if run.file.drive.radius is not None else "amplitude"
+    return f"[drive] {key} is {stated:.4g} m, {heave.name} moves by +/-{moved:.4g} m"
+
+
 def _findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> Iterator[Finding]:
-    stated = run.file.drive
-    heave = next((channel for channel in measured.channels if channel.kind == "displacement"), None)
     if run.file.purpose == "calibration":
         text = "its purpose is calibration: a run that identified the rig cannot validate it"
         yield Finding("run.toml", "calibration_run", text, "fatal")
+    yield from _of_drive(run, measured, drive)
+
+
+def _of_drive(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> Iterator[Finding]:
+    stated = run.file.drive
+    heave = bottom_displacement(measured.channels)
     if stated.kind == "none":
         moved = None if heave is None else half_range(heave)
         if heave is not None and moved is not None and moved > STANDS_STILL:
@@ -53,17 +101,17 @@ def _findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> Ite
                 f"[drive] frequency is {stated.frequency:.4g} Hz, the drive ran at {drive.frequency:.4g} Hz"
             )
             yield Finding("run.toml", "drive_frequency", f"{text}; correct it")
-    amplitude = stated.radius or stated.amplitude
-    if amplitude is None or heave is None or measured.steady is None:
-        return
-    moved = half_range(heave.between(measured.steady.start, measured.steady.stop))
-    if moved is not None and abs(moved / amplitude - 1.0) > STATED_AMPLITUDE:
-        key = "radius" if stated.radius is not None else "amplitude"
+    otherwise = moves_otherwise(run, heave, measured.steady)
+    if heave is not None and otherwise is not None:
         text = (
-            f"[drive] {key} is {amplitude:.4g} m, {heave.name} moves by +/-{moved:.4g} m: correct it or the "
-            f"unit of {heave.name}; the similitude table uses the stated one"
+            f"{otherwise}: correct it or the unit of {heave.name}; the similitude table uses the stated one"
         )
-        yield Finding("run.toml", "drive_amplitude", text)
+        yield Finding("run.toml", AMPLITUDE, text)
+
+
+def bottom_displacement(channels: Iterable[Channel]) -> Channel | None:
+    """Return the channel that shows the bottom motion, if one was logged."""
+    return next((channel for channel in channels if channel.kind == "displacement"), None)
 
 
 def half_range(heave: Channel) -> float | None:

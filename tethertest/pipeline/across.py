@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from tethertest.conditioning.stated import STATED_FREQUENCY
 from tethertest.errors import DataError
 from tethertest.pipeline.across_runs import members, run_parts
 from tethertest.pipeline.analysis_options import Options
@@ -130,7 +131,10 @@ def _setting(part: RunPart, against: str) -> float | None:
 def _fixed(part: RunPart, against: str) -> float | None:
     if against == "frequency":
         return part.nominal_amplitude or part.amplitude
-    return part.nominal_frequency or part.frequency
+    stated, ran = part.nominal_frequency, part.frequency
+    # a slip of the pen would put the run among others than those it was set with
+    slip = stated is not None and ran is not None and abs(ran / stated - 1.0) > STATED_FREQUENCY
+    return ran if slip else stated or ran
 
 
 def _curves(number: int, group: Group, parts: dict[str, RunPart]) -> list[Curve]:

@@ -10,6 +10,8 @@ from typing import Final
 
 import numpy as np
 
+from tethertest.conditioning import drive_findings
+from tethertest.conditioning.stated import AMPLITUDE
 from tethertest.errors import DataError, TethertestError
 from tethertest.pipeline.analysis_options import Options
 from tethertest.pipeline.analyze import analyze_run
@@ -18,7 +20,7 @@ from tethertest.pipeline.stored import run_of
 from tethertest.readers import load_run
 from tethertest.records.across import RunChannel, RunPart
 from tethertest.records.analysis import Analysis, ChannelAnalysis
-from tethertest.records.channel import Channel, ConditionedRun, Window
+from tethertest.records.channel import Channel, ConditionedRun, Finding, Window
 from tethertest.records.run import Run
 from tethertest.spectra import spectrum
 from tethertest.store import is_store, load_store
@@ -130,10 +132,11 @@ def _described(part: RunPart, run: Run) -> RunPart:
 
 
 def _analysed(part: RunPart, run: Run, measured: ConditionedRun, options: Options) -> RunPart:
-    remarks = [f"{f.subject}: {f.text}" for f in measured.findings if f.severity != "note"]
+    remarks = _remarks(measured.findings)
     part = replace(part, remarks=tuple(remarks), from_rest=measured.rest_before is not None)
     if run.file.drive.kind == "none" and options.drive_frequency is None:
-        return replace(part, refused="no drive")
+        contradicted = "; ".join(finding.text for finding in drive_findings(run, measured, None))
+        return replace(part, refused=f"no drive: {contradicted}" if contradicted else "no drive")
     if options.channels and measured.channel(_MOTION) is not None:
         options = replace(options, channels=tuple(dict.fromkeys((*options.channels, _MOTION))))
     try:
@@ -145,17 +148,24 @@ def _analysed(part: RunPart, run: Run, measured: ConditionedRun, options: Option
         analysis = analyze_run(part.path, run, measured, replace(options, replay=False))
     if analysis.drive is None or analysis.window is None:
         return replace(part, refused="no drive frequency: run.toml states none")
+    stated = drive_findings(run, measured, analysis.drive)
+    # a setting in doubt puts its run at a wrong place of a curve, or on a wrong one
+    doubt = "; ".join(finding.text for finding in stated if finding.kind == AMPLITUDE)
     return replace(
         part,
         frequency=analysis.drive.frequency,
         amplitude=_motion_amplitude(analysis) or part.nominal_amplitude,
         channels=tuple(
-            _channel(item, measured.rest_before, analysis.window, analysis.drive.frequency)
+            _channel(item, measured.rest_before, analysis.window, analysis.drive.frequency, doubt)
             for item in analysis.channels
             if item.channel.kind in KINDS
         ),
-        remarks=tuple(remarks),
+        remarks=(*remarks, *_remarks(stated)),
     )
+
+
+def _remarks(findings: Sequence[Finding]) -> list[str]:
+    return [f"{finding.subject}: {finding.text}" for finding in findings if finding.severity != "note"]
 
 
 def _motion_amplitude(analysis: Analysis) -> float | None:
@@ -164,7 +174,9 @@ def _motion_amplitude(analysis: Analysis) -> float | None:
     return line.amplitude if line is not None and line.amplitude > 0.0 else None
 
 
-def _channel(item: ChannelAnalysis, rest: Window | None, window: Window, frequency: float) -> RunChannel:
+def _channel(
+    item: ChannelAnalysis, rest: Window | None, window: Window, frequency: float, doubt: str
+) -> RunChannel:
     channel = item.channel
     at_rest = None if rest is None else _mean(channel.between(rest.start, rest.stop))
     largest = None
@@ -186,7 +198,7 @@ def _channel(item: ChannelAnalysis, rest: Window | None, window: Window, frequen
         channel.at,
         item.lines,
         item.no_lines,
-        _damage(channel, window),
+        "; ".join(reason for reason in (_damage(channel, window), doubt) if reason),
         largest,
         _rise(channel.between(window.start, window.stop)),
         found,

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from tethertest.conditioning import drive_findings
 from tethertest.errors import DataError, TethertestError
 from tethertest.pipeline.analysis_options import (
     FALSE_LINES_OF_RUN,
@@ -20,6 +21,7 @@ from tethertest.pipeline.bare_log import bare_channels, check_usable
 from tethertest.pipeline.conditioned import conditioned, placed, read_logs
 from tethertest.pipeline.expect import expectation
 from tethertest.pipeline.read_bare import settings_of_a_run
+from tethertest.pipeline.reservations import reservations
 from tethertest.pipeline.run_drive import MOTION, drive_channels, run_crank, run_drive
 from tethertest.pipeline.stored import run_of
 from tethertest.pipeline.wave_findings import measured_waves, medium_of, replayed_waves
@@ -108,7 +110,8 @@ def analyze_run(path: str, run: Run, measured: ConditionedRun, options: Options)
         nominal = run.file.drive.frequency
     window = _run_window(measured, options, nominal)
     drive = _run_drive(measured, wanted, window, nominal)
-    notes = [f"{f.subject}: {f.text}" for f in measured.findings if f.severity != "note"]
+    seen = (*measured.findings, *drive_findings(run, measured, drive))
+    notes = [f"{f.subject}: {f.text}" for f in seen if f.severity != "note"]
     motion = crank = None
     if drive is not None and window is not None and heave is not None:
         crank = run_crank(measured, window, drive)
@@ -151,6 +154,7 @@ def analyze_run(path: str, run: Run, measured: ConditionedRun, options: Options)
         )
         if replayed.status.name != "OK":
             notes.append(f"replay: {replayed.status.value}")
+    notes += reservations(found, motion=motion is not None)
     if drive is None:
         notes.append("no drive: no lines were looked for")
     else:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from tethertest.errors import DataError
 from tethertest.pipeline.analysis_options import (
     FALSE_LINES,
@@ -15,8 +17,9 @@ from tethertest.pipeline.analysis_options import (
     window_asked,
 )
 from tethertest.pipeline.bare_log import check_usable
+from tethertest.pipeline.reservations import reservations
 from tethertest.records.analysis import MEASURED, Analysis, ChannelAnalysis, WaveFindings
-from tethertest.records.channel import Channel, Window
+from tethertest.records.channel import Channel, Flag, Window
 from tethertest.records.lines import DriveFit, Expectation
 from tethertest.signal.windows import find_steady
 from tethertest.spectra import find_lines, fit_drive
@@ -47,7 +50,9 @@ def analyze_log(
         for channel in channels:
             check_drive(channel, window, options.drive_frequency)
         moved = [channel for channel in channels if channel.kind == "displacement"]
-        drive = fit_drive(moved or channels, window, options.drive_frequency)
+        # a limit cuts off tops, not their times
+        timed = [replace(item, flags=item.flags & ~np.uint16(Flag.SATURATED)) for item in moved or channels]
+        drive = fit_drive(timed, window, options.drive_frequency)
         notes += resonance_notes(drive.frequency, naturals)
     else:
         notes.append("no drive frequency given: a blind search for lines, without verdicts")
@@ -67,6 +72,7 @@ def analyze_log(
         else:
             item = _with_lines(item, window, drive, told, level, named=bool(options.channels))
         found.append(item)
+    notes += reservations(found, motion=False)
     return Analysis(
         path, name, drive, window, tuple(found), naturals, options.mains, level, WaveFindings(), tuple(notes)
     )

@@ -11,10 +11,17 @@ import numpy as np
 
 from tethertest.errors import DataError, QuantityError
 from tethertest.pipeline.read_bare import read_bare
+from tethertest.pipeline.shown_flags import SHOWN, with_shown_flags, without_codes
+from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Flag, RawChannel, RawLog, Source
 from tethertest.signal.noise import white_noise
 from tethertest.units import UnitScale, channel_scale
 
+#: a slower channel in a table of a faster one fills this share of its rows
+EVEN: Final = 0.95
+#: and one that is held between its samples changes at this share of them: two alike are no change
+HELD_EVEN: Final = 0.8
+_SHOWN_NAMES: Final = tuple((flag.name or "").lower() for flag in SHOWN)
 #: a record of fewer samples has nothing to analyse
 FEWEST_SAMPLES: Final = 16
 #: spacing that varies more than this, relative, between the tenth and the ninetieth per cent is remarked on
@@ -56,6 +63,10 @@ def bare_channels(
     for name in names or known:
         try:
             channel, said = si_channel(known[name], log)
+            rows, used = known[name].time.size, channel.time.size
+            if used < FEWEST_SAMPLES <= rows:
+                message = f"channel {name!r}: the time goes forward in {used} of {rows} rows only"
+                raise DataError(message, "export the log again sorted by time, the oldest row first")
             check_usable(channel)
         except DataError as error:
             if names:
@@ -67,7 +78,20 @@ def bare_channels(
     if not channels:
         message = f"none of its {len(known)} channels can be analysed: {'; '.join(remarks) or 'it has none'}"
         raise DataError(message, "export the log again, with numbers in its columns", path=path)
-    return tuple(channels), tuple(remarks)
+    flagged, said = with_shown_flags(channels)
+    remarks += said + [text for channel in flagged if (text := _left_out(channel))]
+    # noise is that of the samples that are used
+    quiet = [replace(channel, noise=white_noise(channel.values[channel.usable])) for channel in flagged]
+    return tuple(quiet), tuple(remarks)
+
+
+def _left_out(channel: Channel) -> str:
+    """Say how many samples of a channel no analysis uses, and why."""
+    counts = {name: count for name, count in channel.flag_counts().items() if name in _SHOWN_NAMES}
+    if not counts:
+        return ""
+    words = ", ".join(f"{count} {name}" for name, count in counts.items())
+    return f"channel {channel.name!r}: {words} of {channel.time.size} samples are left out"
 
 
 def check_usable(channel: Channel) -> None:
@@ -91,6 +115,28 @@ def check_usable(channel: Channel) -> None:
         raise DataError(message, "check that the sensor was connected, or take the channel out")
 
 
+def _slower(values: FloatArray) -> slice | None:
+    """Return the rows that hold values, if all do that stand at even steps and no others."""
+    known = np.flatnonzero(np.isfinite(values))
+    if known.size < FEWEST_SAMPLES or known.size == values.size:
+        return None
+    step = round(float(known[-1] - known[0]) / (known.size - 1))
+    if step < 2 or np.any(np.diff(known) % step) or np.mean(np.diff(known) == step) < EVEN:
+        return None
+    return slice(int(known[0]), int(known[-1]) + 1, step)
+
+
+def _held(values: FloatArray) -> slice | None:
+    """Return the rows at which values change, if nearly all do at even steps and none in between."""
+    changes = np.flatnonzero(np.diff(values) != 0.0) + 1
+    if changes.size < FEWEST_SAMPLES or not np.isfinite(values).all():
+        return None
+    step = int(np.median(np.diff(changes)))
+    if step < 2 or np.any(np.diff(changes) % step) or np.mean(np.diff(changes) == step) < HELD_EVEN:
+        return None
+    return slice(int(changes[0]) % step, values.size, step)
+
+
 def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
     """Return a channel in SI on the log's own clock, and remarks on what was left out or is not known.
 
@@ -107,7 +153,9 @@ def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
     except QuantityError as error:
         scale = UnitScale("other", raw.unit, 1.0)
         remarks.append(f"channel {raw.name!r}: {error.problem}; its values stay as written")
-    values = raw.values * scale.factor + scale.offset
+    written, coded = without_codes(raw.values)
+    remarks += [f"channel {raw.name!r}: {text}; they are left out" for text in coded]
+    values = written * scale.factor + scale.offset
     finite = np.flatnonzero(np.isfinite(raw.time))
     latest = np.maximum.accumulate(raw.time[finite]) if finite.size else np.empty(0)
     forward = np.ones(finite.size, dtype=bool)
@@ -116,6 +164,17 @@ def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
     if kept.size < raw.time.size:
         count = raw.time.size - kept.size
         remarks.append(f"channel {raw.name!r}: {count} samples whose time does not go forward are left out")
+    slower, held = _slower(values[kept]), _held(values[kept])
+    if held is not None:
+        text = (
+            f"the values change at every {held.step} rows only, as of a slower channel that is held between"
+        )
+        remarks.append(f"channel {raw.name!r}: {text}; the first of each is used")
+        kept = kept[held]
+    elif slower is not None:
+        text = f"one row of {slower.step} holds a value, as of a slower channel in the table of a faster one"
+        remarks.append(f"channel {raw.name!r}: {text}; the empty rows are no holes")
+        kept = kept[slower]
     time = raw.time[kept]
     steps = np.diff(time)
     if steps.size > 1:

@@ -11,6 +11,8 @@ from tethertest.records.lines import ChannelLines, Line, LineVerdict
 
 #: verdicts of what is no line of the response
 NOT_FOUND = frozenset({LineVerdict.NONE, LineVerdict.LEAKAGE, LineVerdict.MAINS, LineVerdict.ALIAS})
+#: verdicts of what stands out and may be no line of the response
+WITHHELD = frozenset({LineVerdict.NOT_RESOLVABLE, LineVerdict.UNDETERMINED})
 
 
 def is_found(line: Line) -> bool:
@@ -106,6 +108,16 @@ class Curve:
     direction: Direction
     points: tuple[CurvePoint, ...]  #: in the order of time
     judgement: Judgement
+
+    @property
+    def largest(self) -> CurvePoint | None:
+        """The point of the largest amplitude, of those that are sure to be lines and are judged."""
+        sure = [
+            point
+            for point in self.points
+            if point.found and not point.damage and LineVerdict(point.verdict) not in WITHHELD
+        ]
+        return max(sure, key=lambda point: point.amplitude, default=None)
 
 
 @dataclass(frozen=True, slots=True)

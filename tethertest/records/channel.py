@@ -12,6 +12,7 @@ import numpy as np
 
 from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray, FlagArray, FloatArray, frozen
+from tethertest.signal.series import sampling_interval
 
 
 class Flag(IntFlag):
@@ -116,8 +117,8 @@ class Channel:
 
     @property
     def rate(self) -> float:
-        """Median sampling rate [Hz]."""
-        return float(1.0 / np.median(np.diff(self.time))) if self.time.size > 1 else 0.0
+        """Usual sampling rate [Hz], gaps left out."""
+        return 1.0 / sampling_interval(self.time) if self.time.size > 1 else 0.0
 
     @property
     def usable(self) -> BoolArray:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from tethertest.records.across import Across, Curve, Group, Loop, RunChannel, RunPart, Step
+from tethertest.records.across import Across, Curve, CurvePoint, Group, Loop, RunChannel, RunPart, Step
 from tethertest.records.analysis import MEASURED
 from tethertest.render.blocks import Picture
 from tethertest.render.write import write_files
@@ -139,23 +139,25 @@ def _curve(curve: Curve) -> dict[str, Any]:
         "unit": curve.unit,
         "order": curve.order,
         "direction": curve.direction.value,
-        "points": [
-            {
-                "run": point.run,
-                "setting": point.setting,
-                "amplitude": point.amplitude,
-                "standard_error": point.standard_error,
-                "interval": list(point.interval),
-                "verdict": point.verdict,
-                "found": point.found,
-                "damage": point.damage or None,
-            }
-            for point in curve.points
-        ],
+        "points": [_point(point) for point in curve.points],
+        "largest": None if curve.largest is None else _point(curve.largest),
         "steps": [_step(step) for step in judged.steps],
         "significance": judged.significance,
         "scatter": judged.scatter if math.isfinite(judged.scatter) else None,
         "no_steps": judged.refused or None,
+    }
+
+
+def _point(point: CurvePoint) -> dict[str, Any]:
+    return {
+        "run": point.run,
+        "setting": point.setting,
+        "amplitude": point.amplitude,
+        "standard_error": point.standard_error,
+        "interval": list(point.interval),
+        "verdict": point.verdict,
+        "found": point.found,
+        "damage": point.damage or None,
     }
 
 

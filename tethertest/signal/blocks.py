@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tethertest.signal.rotation import Times, times
+from tethertest.signal.series import sampling_interval
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.intp]
@@ -93,7 +94,7 @@ def block_means(
     if used_time.size < 2:
         message = f"{used_time.size} usable samples, expected at least two"
         raise ValueError(message)
-    interval = float(np.median(np.diff(time)))
+    interval = sampling_interval(time)
     width = max(1, int(1.0 / (interval * slowest_rate) + 1e-9))
     step = width * interval
     start = used_time[0] - 0.5 * interval

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Protocol, TypeAlias
+from typing import Final, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 Booleans: TypeAlias = npt.NDArray[np.bool_]
+
+
+#: steps that differ from the median by more than this share of it are gaps or jitter, not rounding
+_GAP: Final = 0.25
 
 
 class Series(Protocol):
@@ -28,4 +32,20 @@ class Series(Protocol):
 
     @property
     def rate(self) -> float:
-        """Median sampling rate [Hz]."""
+        """Usual sampling rate [Hz]."""
+
+
+def sampling_interval(time: Floats) -> float:
+    """Return the usual distance of samples [s]: gaps left out, and free of the rounding of the stamps.
+
+    Stamps to a millisecond of 30 Hz are 33, 33 and 34 ms apart; the median of them is 1 % short.
+
+    Parameters
+    ----------
+    time : (n,) float64
+        Increasing [s], two or more.
+    """
+    steps = np.diff(time)
+    median = float(np.median(steps))
+    usual = steps[np.abs(steps - median) <= _GAP * median]
+    return float(np.mean(usual)) if usual.size else median

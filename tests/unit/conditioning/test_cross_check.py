@@ -9,7 +9,10 @@ import pytest
 
 from tethertest.conditioning import condition
 from tethertest.conditioning.cross_check import COVERAGE, gains
+from tethertest.conditioning.inertia import Inertia
 from tethertest.records.channel import Window
+
+from .conftest import PLACES
 
 WINDOW = Window(11.0, 27.0)
 
@@ -23,7 +26,7 @@ def test_agreement_is_a_note_with_all_gains(bench):
     assert not told(conditioned)
     (note,) = [item for item in conditioned.findings if item.kind == "strain_over_tension"]
     assert note.severity == "note"
-    found = gains(conditioned.channels, bench.run.rig, WINDOW, bench.guide.static_tension, 0.5)
+    found = gains(conditioned.channels, bench.run.rig, WINDOW, bench.guide.static_tension, Inertia(0.05))
     assert len(found) == 7  # two gratings against both cells and against each, and cell against cell
     for item in found:
         assert item.gain == pytest.approx(1.0, abs=0.01)
@@ -83,7 +86,8 @@ def test_a_stated_uncertainty_covers_a_stiffness_that_is_off_by_as_much(bench):
 
 def test_a_tension_that_hardly_moves_tells_nothing(bench):
     conditioned = condition(bench.run, bench.logs(), bench.guide)
-    assert not gains(conditioned.channels, bench.run.rig, Window(0.3, 1.9), bench.guide.static_tension, 0.5)
+    still = Window(0.3, 1.9)
+    assert not gains(conditioned.channels, bench.run.rig, still, bench.guide.static_tension, Inertia(0.0))
 
 
 def test_clipped_peaks_do_not_tilt_the_comparison(bench):
@@ -91,3 +95,44 @@ def test_clipped_peaks_do_not_tilt_the_comparison(bench):
     bench.columns["F_top"] = np.minimum(bench.columns["F_top"], limit)
     conditioned = condition(bench.run, bench.logs(), bench.guide)
     assert not told(conditioned)
+
+
+def spread_by_inertia(bench, share):
+    """Take as much from the tension at the bottom, and less towards the top, as the cable's mass does."""
+    for name, place in (("F_bottom", 0.0), *PLACES.items()):
+        rest = np.median(bench.columns[name][:300])
+        bench.columns[name] = rest + (1.0 - share * (1.0 - place)) * (bench.columns[name] - rest)
+
+
+def test_what_inertia_may_be_is_no_fault_of_a_cell_though_no_motion_was_measured(bench):
+    """Mass times acceleration of the cable is 3 % of the tension here."""
+    spread_by_inertia(bench, 0.03)
+    run = bench.with_file(log=bench.run.file.log[:2])
+    conditioned = condition(run, bench.logs(), bench.guide)
+    assert conditioned.channel("heave") is None
+    assert not told(conditioned)
+    (note,) = [item for item in conditioned.findings if item.kind == "strain_over_tension"]
+    assert "no bottom motion was measured" in note.text
+
+
+@pytest.mark.parametrize(
+    ("logs", "radius", "words"),
+    [(2, 0.05, "no bottom motion was measured"), (3, 0.07, "[drive] radius is 0.07 m, heave moves by")],
+)
+def test_more_than_inertia_is_told_with_what_is_not_known_of_the_motion(bench, logs, radius, words):
+    bench.columns["F_bottom"] = 0.88 * (
+        bench.columns["F_bottom"] - np.median(bench.columns["F_bottom"][:300])
+    )
+    file = {"log": bench.run.file.log[:logs], "drive": replace(bench.run.file.drive, radius=radius)}
+    (finding,) = told(condition(bench.with_file(**file), bench.logs(), bench.guide))
+    assert finding.subject == "tension_bottom"
+    assert words in finding.text
+
+
+def test_a_motion_that_is_not_as_stated_accuses_no_cell(bench):
+    """The encoder shows half the motion, so half the inertia."""
+    spread_by_inertia(bench, 0.04)
+    bench.columns["heave"] = 0.5 * bench.columns["heave"]
+    assert not told(condition(bench.run, bench.logs(), bench.guide))
+    believed = replace(bench.run.file.drive, radius=0.025)
+    assert told(condition(bench.with_file(drive=believed), bench.logs(), bench.guide))

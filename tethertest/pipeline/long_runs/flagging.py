@@ -9,10 +9,10 @@ import numpy as np
 
 from tethertest.conditioning.flags import sensor_of
 from tethertest.conditioning.load_cells import calibrated
+from tethertest.conditioning.plateaus import Plateaus, plateaus_of
 from tethertest.conditioning.spikes import with_spikes_flagged
 from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes, blocks
-from tethertest.pipeline.long_runs.noise import quantum_of, white_noise_of
-from tethertest.pipeline.long_runs.plateaus import Plateaus, plateaus_of
+from tethertest.pipeline.long_runs.noise import white_noise_of
 from tethertest.pipeline.long_runs.record import Record
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, RawChannel, RawLog
@@ -113,17 +113,11 @@ def _means(values: FloatArray, usable: np.ndarray, factor: int) -> FloatArray:
 
 
 def _plateaus(record: Record, number: int, sizes: Sizes) -> Plateaus:
-    def read(start: int, stop: int) -> Channel:
-        return record.channels(start, stop)[number]
+    def read(start: int, stop: int) -> tuple[FloatArray, FloatArray]:
+        channel = record.channels(start, stop)[number]
+        return channel.time, channel.values
 
-    def noise() -> float:
-        def values(start: int, stop: int) -> FloatArray:
-            return _without_holes(read(start, stop))
-
-        rounding = quantum_of(values, record.rows, sizes.whole)
-        return max(rounding, white_noise_of(values, record.rows, sizes.whole))
-
-    return plateaus_of(read, record.rows, sizes.block, noise)
+    return plateaus_of(read, record.rows, sizes.block, record.channels(0, 1)[number].kind)
 
 
 def _sigma(record: Record, number: int, run: Run, sizes: Sizes) -> float:

@@ -5,6 +5,7 @@ Exit codes: 0 pass, 1 fail, 2 bad input, 3 a fault of the program, 4 undecided.
 
 from __future__ import annotations
 
+import io
 import sys
 
 import typer
@@ -19,6 +20,7 @@ from tethertest.cli.report import report
 from tethertest.cli.scale import scale
 from tethertest.cli.schema import schema
 from tethertest.cli.solve import solve
+from tethertest.cli.terminal import printable
 from tethertest.cli.version import show_version
 from tethertest.errors import TethertestError
 
@@ -40,10 +42,13 @@ for command in (report, inspect, new, analyze, ingest, export, solve, scale, ben
 
 def main() -> None:
     """Run the command line; a user's mistake is one message and exit code 2, never a traceback."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a file's name may be no text in the terminal's encoding
+            stream.reconfigure(errors="backslashreplace")
     try:
         app()
     except TethertestError as error:
-        sys.stderr.write(f"error: {error}\n")
+        sys.stderr.write(f"error: {printable(str(error))}\n")
         raise SystemExit(BAD_INPUT) from None
     except (KeyboardInterrupt, BrokenPipeError):
         raise SystemExit(130) from None

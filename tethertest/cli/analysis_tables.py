@@ -7,12 +7,15 @@ from typing import Any
 
 import typer
 
+from tethertest.cli.terminal import printable, table_console
+
 #: verdicts of lines that a reader need not see one by one
 _QUIET = ("none",)
 
 
 def print_analysis(found: dict[str, Any]) -> None:
     """Print the object of ``analyze --json`` for a person."""
+    found = printable(found)
     drive, window = found["drive"], found["window"]
     said = "no drive"
     if drive is not None:
@@ -133,16 +136,14 @@ def _print_waves(waves: dict[str, Any]) -> None:
 
 def print_table(headings: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
     """Print rows under their headings."""
-    from rich.console import Console
     from rich.table import Table
 
-    console = Console(highlight=False, markup=False, width=None if Console().is_terminal else 140)
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for heading in headings:
         table.add_column(heading)
     for row in rows:
         table.add_row(*row)
-    console.print(table)
+    table_console().print(table)
 
 
 def _label(channel: dict[str, Any]) -> str:

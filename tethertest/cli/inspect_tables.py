@@ -6,17 +6,17 @@ from typing import Any
 
 import typer
 
+from tethertest.cli.terminal import printable, table_console
 from tethertest.pipeline.remarks import grouped, some
 
 #: separators that say nothing when they are printed as they are
 _SEPARATORS = {"\t": "tab", " ": "spaces", ",": "comma", ";": "semicolon"}
-#: columns of a page that is no terminal
-_WIDTH = 160
 _DECIMALS = {".": "decimal point", ",": "decimal comma"}
 
 
 def print_log(log: dict[str, Any]) -> None:
     """Print what is known of one log; a refusal goes to standard error."""
+    log = printable(log)
     if log["refused"]:
         _print_refusal(log)
         return
@@ -70,10 +70,8 @@ def _start(start: str) -> str:
 
 
 def _print_channels(channels: list[dict[str, Any]], of_time: set[str]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
-    console = Console(highlight=False, width=None if Console().is_terminal else _WIDTH)
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     table.add_column("channel", overflow="fold")
     for heading in ("kind", "unit", "as written"):
@@ -95,4 +93,4 @@ def _print_channels(channels: list[dict[str, Any]], of_time: set[str]) -> None:
             *("" if number is None else f"{number:.6g}" for number in numbers),
             flags,
         )
-    console.print(table)
+    table_console().print(table)

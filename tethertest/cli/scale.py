@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from tethertest.cli.terminal import table_console
+
 
 def scale(
     rig: Annotated[Path, typer.Argument(help="Rig file.")],
@@ -29,10 +31,9 @@ def scale(
     if as_json:
         typer.echo(json.dumps(found, ensure_ascii=False, allow_nan=False))
         return
-    from rich.console import Console
     from rich.table import Table
 
-    console = Console(highlight=False, width=None if Console().is_terminal else 140)
+    console = table_console()
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for heading in ("group", "product"):
         table.add_column(heading)
@@ -54,6 +55,6 @@ def scale(
         )
     console.print(table)
     for name, value in found["ratios"].items():
-        console.print(f"prototype/model {name}: {value:.5g}", markup=False)
+        console.print(f"prototype/model {name}: {value:.5g}")
     for conflict in found["conflicts"]:
-        console.print(f"cannot hold together: {', '.join(conflict)}", markup=False)
+        console.print(f"cannot hold together: {', '.join(conflict)}")

@@ -369,3 +369,17 @@ def test_two_tables_side_by_side_are_refused(write, settings):
     assert caught.value.line == 1
     log = read_log(path, settings(columns=("t", "F", "t_G", "G"), skip_rows=1))
     assert [channel.name for channel in log.channels] == ["F", "t_G", "G"]
+
+
+@pytest.mark.parametrize("header", [",F [N]\n", ""])
+def test_a_first_column_without_a_name_that_counts_rows_is_no_time(write, header):
+    path = write(header + "".join(f"{row},{50.0 + row % 7}\n" for row in range(40)), "a.csv")
+    with pytest.raises(FileFormatError, match="counts the rows, or whole seconds") as refused:
+        read_log(path)
+    assert 'rate = "100 Hz"' in refused.value.remedy
+
+
+@pytest.mark.parametrize("header", ["time/ms,F [N]", "time_msec,F [N]", "time [msec],F [N]", "t/ms,F [N]"])
+def test_milliseconds_however_written(write, header):
+    log = read_log(write(header + "\n" + "".join(f"{10 * row},{row % 7}.5\n" for row in range(40)), "a.csv"))
+    assert log.channels[0].time[-1] == pytest.approx(0.39)

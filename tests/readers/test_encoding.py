@@ -21,6 +21,8 @@ CHINESE = "时间(s),拉力(千牛),应变(微应变)\n"
         ("time\tF\n0\t1\n", "utf-16-be", "utf-16-be"),
         ("Temperatur [°C]\tDehnung [µm/m]\n", "cp1252", "cp1252"),
         ("Größe [mm], créé à Évreux\n", "cp1252", "cp1252"),
+        ("時間[s],張力[N]\n", "cp932", "cp932"),
+        ("Größe ‚a‘ … ƒ\n", "cp1252", "cp1252"),
         (CHINESE, "gb18030", "gb18030"),
         ("温度(℃)\t拉力(N)\n", "gb18030", "gb18030"),
     ],
@@ -78,6 +80,7 @@ def test_a_codec_that_is_not_for_text_is_refused(write, settings):
     [
         ("time,F\n0,1\n", "ascii"), ("Längenänderung [µm]\n", "utf-8"), ("°C: ÀÁ\n", "cp1252"),
         ("Größe [mm], créé à Évreux\n", "cp1252"), (CHINESE, "utf-8"), (CHINESE, "gb18030"),
+        ("時間[s],張力[N]\n", "cp932"), ("荷重 ソ", "cp932"),
         ("°C ÀÁ 20 °", "cp1252"), ("温度(℃)\t拉力", "gb18030"),
     ],
 )  # fmt: skip

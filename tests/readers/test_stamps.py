@@ -50,6 +50,36 @@ def test_date_orders(cell, order, start):
     assert (stamps.date_order, stamps.start()) == (order, start)
 
 
+@pytest.mark.parametrize(
+    ("cells", "ways"),
+    [
+        (["26-09-05 10:00:00"], ("dmy", "ymd")),
+        (["26/09/27 10:00:00", "26/09/28 10:00:00"], ("dmy", "ymd")),
+        (["05/06/07 10:00:00"], ("dmy", "mdy", "ymd")),
+        (["05/06/2026 10:00:00"], ("dmy", "mdy")),
+    ],
+)
+def test_years_of_two_digits_may_stand_first(cells, ways):
+    with pytest.raises(FileFormatError) as refused:
+        parse_stamps(cells, Path("a.csv"), range(len(cells)))
+    assert all((f'"{order}"' in refused.value.remedy) == (order in ways) for order in ("dmy", "mdy", "ymd"))
+    starts = {parse_stamps(cells, Path("a.csv"), range(len(cells)), order).start() for order in ways}
+    assert len(starts) == len(ways)
+
+
+@pytest.mark.parametrize(
+    ("cells", "order"),
+    [
+        (["09/26/26 10:00:00"], "mdy"),  # there is no month 26
+        (["26/09/26 10:00:00"], "dmy"),
+        (["26-09-05 10:00:00", "99-12-31 10:00:00"], "ymd"),  # there is no day 99
+        (["31/12/99 10:00:00"], "dmy"),
+    ],
+)
+def test_dates_that_leave_one_order(cells, order):
+    assert parse_stamps(cells, Path("a.csv"), range(len(cells))).date_order == order
+
+
 @pytest.mark.parametrize(("order", "month"), [("dmy", 9), ("mdy", 5)])
 def test_the_settings_decide_an_open_date(order, month):
     assert parse(["05/09/2026 14:00:00"], order).start().month == month

@@ -19,6 +19,8 @@ OUTPUT_KINDS: Final = ("ratio", "voltage", "count")
 #: names of the two columns, and of the third that may follow
 COLUMNS: Final = ("measured", "real")
 UNCERTAINTY: Final = "uncertainty"
+#: bytes of a calibration: some tens of rows, or some thousands
+LARGEST: Final = 2**20
 #: units of a reference given as a mass; [kg]
 MASSES: Final = {"kg": 1.0, "g": 1e-3, "lb": 0.45359237, "lbs": 0.45359237}
 #: a conventional mass is that of a weight of 8000 kg/m^3 in air of 1.2 kg/m^3 (OIML D 28)
@@ -75,6 +77,9 @@ def read_calibration(path: Path, units: tuple[str, str] | None, gravity: float) 
     FileFormatError
         File, line, what was found and what was expected.
     """
+    if path.is_file() and path.stat().st_size > LARGEST:
+        message = f"found {path.stat().st_size} bytes, expected a calibration of at most {LARGEST}"
+        raise FileFormatError(message, "name the calibration, not the log of it", path=path)
     lines = read_document(path).body.decode().split("\n")
     rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and line.strip()[0] != "#"]
     if not rows:

@@ -11,12 +11,14 @@ _NAMES: Final = frozenset([
     "elapsed time", "relative time", "epoch", "unix", "unix time", "seconds", "sec", "zeit",
     "temps", "tiempo", "tempo", "时间", "采样时间", "时刻",
 ])  # fmt: skip
-_NAME_WITH_UNIT = re.compile(r"(?:time|t|elapsed|timestamp|epoch)[_ ](s|sec|ms|us|min|h)", re.IGNORECASE)
+_NAME_WITH_UNIT = re.compile(
+    r"(?:time|t|elapsed|timestamp|epoch)[_ /](s|sec|ms|msec|us|min|h)", re.IGNORECASE
+)
 #: unit of a counter of time, in lower case -> seconds
 SECONDS: Final = {
-    "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "秒": 1.0, "ms": 1e-3, "毫秒": 1e-3,
-    "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9, "min": 60.0, "分": 60.0, "h": 3600.0, "hr": 3600.0,
-    "d": 86400.0, "day": 86400.0, "days": 86400.0,
+    "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "秒": 1.0, "ms": 1e-3, "msec": 1e-3, "毫秒": 1e-3,
+    "us": 1e-6, "usec": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9,
+    "min": 60.0, "分": 60.0, "h": 3600.0, "hr": 3600.0, "d": 86400.0, "day": 86400.0, "days": 86400.0,
 }  # fmt: skip
 #: unit of a counter of days, only ever as the run file or an attribute says it -> days from its zero to 1970
 #: (MATLAB counts from the year 0; Excel from 1900, with a 29 February 1900 that was none, or from 1904)

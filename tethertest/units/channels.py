@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from tethertest.errors import QuantityError
-from tethertest.units.registry import STANDARD_GRAVITY, parse_unit, si_unit
+from tethertest.units.registry import STANDARD_GRAVITY, is_ratio, parse_unit, si_unit
 
 #: kind of channel -> SI unit of its values ("" where the logger's own unit stays)
 KINDS: Final = {
@@ -36,6 +36,7 @@ _KINDS_BY_DIMENSION = (
     "count",
     "strain",
 )
+_FAHRENHEIT = {"degf", "°f", "℉", "deg f", "fahrenheit"}
 _CELSIUS = {"degc", "°c", "℃", "deg c", "celsius", "c"}
 
 
@@ -77,6 +78,8 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
         return UnitScale("acceleration", "m/s^2", STANDARD_GRAVITY)
     if text.lower() in _CELSIUS and kind in {None, "temperature"}:
         return UnitScale("temperature", "K", 1.0, 273.15)
+    if text.lower() in _FAHRENHEIT and kind in {None, "temperature"}:
+        return UnitScale("temperature", "K", 5.0 / 9.0, 459.67 * 5.0 / 9.0)
     if not text and kind is None:
         return UnitScale("other", "", 1.0)
     quantity = parse_unit(text)
@@ -101,6 +104,8 @@ def _kind_of(text: str, quantity: Any) -> str:
     if text.replace(" ", "") in {"mV/V", "V/V", "uV/V", "µV/V"}:
         return "ratio"
     if not text or text in {"-", "1"}:
+        return "other"
+    if quantity.dimensionless and not is_ratio(quantity):
         return "other"
     for kind in _KINDS_BY_DIMENSION:
         if si_unit(KINDS[kind]).dimensionality == quantity.dimensionality:

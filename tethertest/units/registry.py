@@ -73,7 +73,18 @@ _WHOLE = {
     "摄氏度": "degC", "伏": "volt", "伏特": "volt", "毫伏": "millivolt", "赫兹": "hertz", "秒": "second",
 }  # fmt: skip
 
+#: the longest unit that is read: a parser takes minutes for thousands of letters
+_LONGEST = 60
+#: a whole number becomes a float: powers of powers then overflow at once, and do not run without end
+_WHOLE_NUMBER = re.compile(r"(?<![\w.])(?<![eE][-+])\d+(?![\w.])")
 _POWER = re.compile(r"(?<=[A-Za-z])([2-4])(?![A-Za-z0-9])")
+
+_WORD = re.compile(r"[^\W\d]\w*")
+#: prefixes that pint knows and no load cell, interrogator or rig file has
+_RARE_PREFIXES = frozenset({
+    "quecto", "ronto", "yocto", "zepto", "atto", "femto", "exa", "peta", "zetta", "yotta", "ronna", "quetta",
+    "kibi", "mebi", "gibi", "tebi", "pebi", "exbi", "zebi", "yobi",
+})  # fmt: skip
 
 
 def parse_unit(text: str) -> Any:
@@ -87,21 +98,48 @@ def parse_unit(text: str) -> Any:
     import pint
 
     cleaned = text.strip()
+    if len(cleaned) > _LONGEST:
+        message = f"unit {cleaned[:_LONGEST]!r}... is not known"
+        raise QuantityError(message, "use a unit such as N, kN, mm, Hz, mV/V, nm or degC")
     alias = _WHOLE.get(cleaned.lower() if cleaned != "Nm" else "Nm")
     if cleaned == "Nm":
         alias = "newton * meter"
     if alias is None:
         alias = _POWER.sub(r"**\1", cleaned.replace("·", " ").replace("²", "**2").replace("³", "**3"))
+        alias = _WHOLE_NUMBER.sub(r"\g<0>.0", alias)
+    if (rare := _rarely_prefixed(alias)) is not None:
+        message = f"unit {text!r} would be {rare}, which nobody logs"
+        raise QuantityError(message, "state the unit that is meant, such as N, or none")
     try:
         return registry().parse_expression(alias) * registry().dimensionless
     except (pint.UndefinedUnitError, pint.DefinitionSyntaxError) as error:
         message = f"unit {text!r} is not known"
         raise QuantityError(message, "use a unit such as N, kN, mm, Hz, mV/V, nm or degC") from error
-    except pint.OffsetUnitCalculusError:
-        return registry().Quantity(1.0, registry().kelvin)
+    except pint.OffsetUnitCalculusError as error:
+        if registry().parse_units(alias) == registry().degC:
+            return registry().Quantity(1.0, registry().kelvin)
+        message = f"unit {text!r} has a zero of its own or is a level, and no factor makes it SI"
+        raise QuantityError(message, "log the quantity itself, such as N, V or degC") from error
     except Exception as error:  # pint lets tokenizer and type errors of its parser through
         message = f"unit {text!r} cannot be read"
         raise QuantityError(message, "write it like kg/m, N s/m or m/s^2") from error
+
+
+def _rarely_prefixed(alias: str) -> str | None:
+    """Return the full name of a unit with a prefix that no instrument uses: RN is a record number."""
+    for word in _WORD.findall(alias):
+        readings = registry().parse_unit_name(word)
+        if readings and readings[0][0] in _RARE_PREFIXES:
+            return f"{readings[0][0]}{readings[0][1]}"
+    return None
+
+
+def is_ratio(quantity: Any) -> bool:
+    """Return whether a dimensionless unit is a share or a ratio; an angle or a bit is none."""
+    shares = {"percent_", "microstrain_", "percent", "ppm"}
+    length = registry().meter.dimensionality
+    names = [name for name, _ in quantity.unit_items()]
+    return all(name in shares or registry().Unit(name).dimensionality == length for name in names)
 
 
 def si_unit(text: str) -> Any:

@@ -85,6 +85,9 @@ def test_an_uncertainty_is_kept(text: str, uncertainty: float) -> None:
         ("m/s2", None, "acceleration", 1.0),
         ("mm", None, "displacement", 1e-3),
         ("count", None, "count", 1.0),
+        ("nm/m", None, "strain", 1e-9),
+        ("deg", None, "other", 1.0),
+        ("bit", None, "other", 1.0),
         ("-", None, "other", 1.0),
         ("", None, "other", 1.0),
     ],
@@ -97,12 +100,21 @@ def test_a_channel_unit_is_read_by_its_kind(
     assert scale.factor == pytest.approx(factor)
 
 
+def test_fahrenheit_has_an_offset_and_a_factor() -> None:
+    scale = channel_scale("degF")
+    assert scale.factor * 212.0 + scale.offset == pytest.approx(373.15)
+    assert scale.factor * 32.0 + scale.offset == pytest.approx(273.15)
+
+
 def test_celsius_has_an_offset() -> None:
     scale = channel_scale("Deg C")
     assert (scale.kind, scale.factor, scale.offset) == ("temperature", 1.0, 273.15)
 
 
-@pytest.mark.parametrize(("written", "kind"), [("N", "displacement"), ("mm", "tension"), ("foo", "tension")])
+@pytest.mark.parametrize(
+    ("written", "kind"),
+    [("N", "displacement"), ("mm", "tension"), ("foo", "tension"), ("RN", "tension"), ("dB", "temperature")],
+)
 def test_a_unit_that_does_not_belong_to_the_kind_is_refused(written: str, kind: str) -> None:
     with pytest.raises(QuantityError):
         channel_scale(written, kind)

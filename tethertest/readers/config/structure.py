@@ -16,6 +16,8 @@ from tethertest.units import parse_quantity
 
 #: fields of records that no file has: `uncertainties` and `with_calibrations` fill them
 DERIVED_FIELDS = frozenset({"uncertainty", "calibrations"})
+#: unknown keys of one table that are told; a search for the nearest name takes time
+_UNKNOWN = 50
 
 Record = TypeVar("Record")
 
@@ -160,9 +162,9 @@ def _key_problems(kind: Any, data: Any, key: KeyPath) -> Iterator[Problem]:
             yield Problem(key, f"found {str(data)!r}, expected {what}", f"write it without quotes: {stamp}")
     elif is_dataclass(kind) and isinstance(data, dict):
         known = field_types(kind)  # type: ignore[arg-type]
-        for name in data:
-            if name not in known:
-                yield Problem((*key, name), "unknown key", suggestion(name, known))
+        unknown = [name for name in data if name not in known]
+        for name in unknown[:_UNKNOWN]:
+            yield Problem((*key, name), "unknown key", suggestion(name, known))
     for inner, value, part in _children(kind, data):
         yield from _key_problems(inner, value, (*key, part))
 

@@ -12,6 +12,8 @@ from tethertest.errors import RunFileError
 
 KeyPath: TypeAlias = tuple[str | int, ...]  #: ("sensor", 3, "rated"); entries of arrays count from 0
 
+#: bytes of a file: a rig of a thousand sensors has half of them
+_LARGEST = 2**20
 _SPACE = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
 _BLANK = re.compile(r"[ \t]*")
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -51,9 +53,10 @@ def read_document(path: Path, what: str) -> TomlFile:
     Raises
     ------
     RunFileError
-        The file is missing, is no UTF-8 text, is not valid TOML or is far too deep.
+        The file is missing, is no UTF-8 text, is not valid TOML, is far too deep or too large.
     """
     try:
+        _check_size(path, what)
         text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         message = f"the {what} does not exist"
@@ -73,6 +76,16 @@ def read_document(path: Path, what: str) -> TomlFile:
         message = f"the {what} holds a number or a nesting of lists that is too long to read"
         raise RunFileError(message, "write quantities as text with a unit", path=path) from None
     return TomlFile(path, data, _Scanner(text).scan())
+
+
+def _check_size(path: Path, what: str) -> None:
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        message = f"the {what} is a pipe or a device"
+        raise RunFileError(message, "give the path of a readable TOML file", path=path)
+    size = path.stat().st_size
+    if size > _LARGEST:
+        message = f"the {what} has {size} bytes, expected at most {_LARGEST}"
+        raise RunFileError(message, "leave logs and comments of that size in files of their own", path=path)
 
 
 def _nearby(path: Path) -> str:
@@ -100,6 +113,7 @@ class _Scanner:
     def __init__(self, text: str) -> None:
         self.text = text
         self.position = 0
+        self.line, self.counted = 1, 0  # the line at a place: it only moves on
         self.lines: dict[KeyPath, int] = {}
         self.entries: dict[KeyPath, int] = {}  # array of tables -> entries seen
 
@@ -183,7 +197,9 @@ class _Scanner:
                 entry += 1
 
     def _line(self) -> int:
-        return self.text.count("\n", 0, self.position) + 1
+        self.line += self.text.count("\n", self.counted, self.position)
+        self.counted = self.position
+        return self.line
 
     def _skip(self, pattern: re.Pattern[str]) -> str:
         match = pattern.match(self.text, self.position)

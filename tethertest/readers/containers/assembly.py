@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.limits import CELLS, COLUMNS
+from tethertest.readers.containers.limits import CELLS, COLUMNS, COMPRESSION_RATIO, RATIO_FROM
 from tethertest.readers.containers.table import Column, Facts, Table, listed, toml_text
 from tethertest.readers.containers.tree import Leaf, Tree
 from tethertest.readers.timeunits import is_time_name
@@ -54,6 +54,9 @@ def assembled(tree: Tree, name: str, leaves: Sequence[Leaf], facts: Facts, setti
             f"table {name!r} has {width} columns of {length}, expected at most {COLUMNS} and {CELLS} numbers"
         )
         raise FileFormatError(message, "split the log, or name a smaller table", path=tree.path)
+    if width * length * 8 > max(RATIO_FROM, COMPRESSION_RATIO * tree.path.stat().st_size):
+        message = f"table {name!r} unpacks to {width} columns of {length}, more than a log of its size holds"
+        raise FileFormatError(message, "export the channels of the log alone", path=tree.path)
     parts, named = _with_names(tree, name, parts, settings)
     columns = tuple(column for part in parts for column in _columns(part))
     return Table(tree.path, columns, named, facts, remarks=tuple(remarks))

@@ -11,7 +11,14 @@ from typing import Any, Final
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.limits import CELLS, DEPTH, OBJECTS, TEXT_BYTES
+from tethertest.readers.containers.limits import (
+    CELLS,
+    COMPRESSION_RATIO,
+    DEPTH,
+    OBJECTS,
+    RATIO_FROM,
+    TEXT_BYTES,
+)
 from tethertest.readers.containers.table import Column, Numbers
 from tethertest.readers.containers.tree import NAME_LISTS, UNIT_KEYS, Branch, Leaf, Records, facts_of
 
@@ -54,16 +61,16 @@ class Walk:
             leaves: list[Leaf] = []
             records: list[Records] = []
             scalars: dict[str, object] = dict(self._scalar_attributes(group))
+            count += len(group)  # told before the names are listed, which takes far longer
+            if count > OBJECTS:
+                message = f"the file holds more than {OBJECTS} objects"
+                raise FileFormatError(message, "export the channels alone", path=self.path)
             for name in group:
-                count += 1
-                if count > OBJECTS:
-                    message = f"the file holds more than {OBJECTS} objects"
-                    raise FileFormatError(message, "export the channels alone", path=self.path)
                 place = f"{here}/{name}" if here else name
                 item = self._item(group, name, place)
                 if item is None:
                     continue
-                if not hasattr(item, "dtype"):
+                if not hasattr(item, "shape"):  # a group, or a named type
                     if hasattr(item, "keys"):
                         waiting.append((place, item, depth + 1))
                     continue
@@ -181,6 +188,8 @@ def trouble_of(item: Any, shape: tuple[int, ...]) -> str:
         return f"declares {'x'.join(map(str, shape))} values, expected at most {CELLS}"
     if item.dtype.kind == "V" and prod(shape) * max(item.dtype.itemsize // 8, 1) > CELLS:
         return f"declares {shape[0]} records of {item.dtype.itemsize} bytes, expected at most {CELLS} numbers"
+    if prod(shape) * item.dtype.itemsize > max(RATIO_FROM, COMPRESSION_RATIO * item.file.id.get_filesize()):
+        return "unpacks to more than a log of the file's size holds"
     properties = item.id.get_create_plist()
     for number in range(properties.get_nfilters()):
         code, _, _, label = properties.get_filter(number)

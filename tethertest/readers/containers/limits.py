@@ -23,8 +23,14 @@ CELLS: Final = 100_000_000
 SHEET_CELLS: Final = 20_000_000
 #: bytes of a JSON log: its values as objects take up to 25 times their text
 JSON_BYTES: Final = 128 * 2**20
+#: lists and objects in a JSON log, each of them a row: half an hour at 1 kHz
+JSON_LISTS: Final = 2_000_000
 #: columns of one table: a distributed fibre sensor has some thousands of points
 COLUMNS: Final = 20_000
+#: bytes of one line of a text log, or of blank lines one after the other: the widest table, 50 signs a column
+LINE_BYTES: Final = 2**20
+#: bytes of a text log among which its layout is looked for
+LAYOUT_BYTES: Final = 16 * 2**20
 #: groups, structs or lists inside each other: exports have two or three levels
 DEPTH: Final = 32
 #: objects of one file (groups, data sets, variables, blocks), so that a walk through it ends

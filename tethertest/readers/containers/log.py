@@ -17,6 +17,8 @@ from tethertest.records.run import Log
 
 #: whole numbers beyond this are not all float64
 _EXACT = 2**53
+#: remarks that an error repeats
+_SHOWN = 8
 
 
 def log_of(name: str, table: Table, settings: Log | None, *, encoding: str = "") -> RawLog:
@@ -58,6 +60,7 @@ def log_of(name: str, table: Table, settings: Log | None, *, encoding: str = "")
             channels.append(raw_channel(column.name, column.unit, axis.time, _numbers(column, remarks)))
     if not channels:
         message = f"the table has a time but no channels; its columns are {listed(table.names)}"
+        message = "; ".join([message, *(*table.remarks, *remarks)[:_SHOWN]])
         raise table.error(message, "choose the table that holds the data")
     return RawLog(
         path=table.path,

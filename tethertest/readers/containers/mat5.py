@@ -38,6 +38,8 @@ _CELL, _STRUCT, _CHAR, _OPAQUE = 1, 2, 4, 17
 _NUMERIC: Final = range(6, 16)
 _CLASSES: Final = {3: "is an object", 5: "is a sparse matrix", 16: "is a function handle"}
 _COMPLEX: Final = 0x0800
+#: bytes that are unpacked at once
+_PIECE: Final = 2**16
 #: numpy's own limit
 _DIMENSIONS: Final = 32
 
@@ -79,6 +81,7 @@ class _Parser:
             text = "its header is not whole"
             raise _DamageError(text)
         self.order = "<" if mark == b"IM" else ">"
+        self.packed = 0  # bytes so far of packed variables, and of what they held
         self.unpacked = 0
         self.objects = 0
 
@@ -99,16 +102,23 @@ class _Parser:
             yield self._matrix(element, 0)
 
     def _unpacked(self, body: memoryview) -> memoryview:
-        limit = min(DECOMPRESSED_BYTES, max(RATIO_FROM, COMPRESSION_RATIO * len(self.data))) - self.unpacked
+        """Return what a packed variable holds; its bytes are counted against those that it came from."""
         machine = zlib.decompressobj()
-        unpacked = machine.decompress(body, max(limit, 1))
-        self.unpacked += len(unpacked)
+        unpacked = bytearray()
+        for start in range(0, len(body), _PIECE):
+            part: memoryview | bytes = body[start : start + _PIECE]
+            self.packed += len(part)
+            limit = min(DECOMPRESSED_BYTES, max(RATIO_FROM, COMPRESSION_RATIO * self.packed))
+            while part:
+                unpacked += machine.decompress(part, max(limit - self.unpacked - len(unpacked), 1))
+                part = machine.unconsumed_tail
+                if part and self.unpacked + len(unpacked) >= limit:
+                    message = "the MATLAB file unpacks to more than a log of its size holds"
+                    raise FileFormatError(message, "save the channels alone", path=self.path)
         if not machine.eof:
-            if machine.unconsumed_tail:
-                message = "the MATLAB file unpacks to more than a log of its size holds"
-                raise FileFormatError(message, "save the channels alone", path=self.path)
             text = "a compressed variable is cut"
             raise _DamageError(text)
+        self.unpacked += len(unpacked)
         return memoryview(unpacked)
 
     def _element(self, data: memoryview, position: int, *, is_padded: bool = True) -> _Element:

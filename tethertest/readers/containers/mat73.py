@@ -44,6 +44,7 @@ class _Walk:
         self.path = path
         self.file = file
         self.objects = 0
+        self._known: dict[int, Item] = {}  # by their place in the file
 
     def linked(self, group: Any, name: str, depth: int) -> Item:
         """Return what a hard link leads to."""
@@ -67,7 +68,7 @@ class _Walk:
             return Other(f"is a MATLAB {kind[:40] or 'object'}")
         if hasattr(found, "keys"):
             return self._struct(found, depth) if kind in {"", "struct"} else Other(f"is a MATLAB {kind[:40]}")
-        if not hasattr(found, "dtype"):
+        if not hasattr(found, "shape"):
             return Other("is no array")
         return self._data_set(found, kind, depth)
 
@@ -103,7 +104,18 @@ class _Walk:
             message = f"{found.name!r} declares {prod(found.shape)} cells, expected at most {OBJECTS}"
             raise FileFormatError(message, "save the channels alone", path=self.path)
         references = values_of(self.path, found).reshape(-1)
-        return [self._item(self.file[reference], depth + 1) for reference in references]
+        return [self._target(reference, depth + 1) for reference in references]
+
+    def _target(self, reference: Any, depth: int) -> Item:
+        """Return what a reference leads to, read once however many lead there: cells may list each other."""
+        import h5py
+
+        found = self.file[reference]
+        address = int(h5py.h5o.get_info(found.id).addr)
+        self.objects += 1
+        if address not in self._known:
+            self._known[address] = self._item(found, depth)
+        return self._known[address]
 
     def _struct(self, group: Any, depth: int) -> Item:
         fields: dict[str, list[Item]] = {}
@@ -127,7 +139,7 @@ class _Walk:
         """Return whether a field has a value for each struct of an array: a cell array is marked as such."""
         import h5py
 
-        is_reference = hasattr(found, "dtype") and h5py.check_ref_dtype(found.dtype) is h5py.Reference
+        is_reference = hasattr(found, "shape") and h5py.check_ref_dtype(found.dtype) is h5py.Reference
         return is_reference and "MATLAB_class" not in found.attrs
 
 

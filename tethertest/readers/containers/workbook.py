@@ -172,7 +172,7 @@ def _parts(path: Path) -> dict[str, bytes]:
             if info.filename in parts:
                 message = f"the workbook holds the part {info.filename!r} twice"
                 raise FileFormatError(message, "save it again from Excel", path=path)
-            with member_stream(archive, info, path, size) as member:
+            with member_stream(archive, info, path) as member:
                 try:
                     text = member.read(left + 1)
                 except FileFormatError:

@@ -17,7 +17,8 @@ from tethertest.readers.containers.limits import (
 )
 
 ZIP_MAGIC: Final = b"PK\x03\x04"
-_BLOCK: Final = 2**20
+#: bytes asked for at once: zipfile reads as many packed ones ahead
+_BLOCK: Final = 2**16
 #: what every packer writes; LZMA may ask for a dictionary of 4 GB
 _METHODS: Final = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 _END = struct.Struct("<4s4H2LH")
@@ -30,10 +31,10 @@ _ENCRYPTED: Final = 0x1
 class LimitedStream:
     """A decompressing stream that stops at the limits on size and ratio."""
 
-    def __init__(self, stream: Any, path: Path, compressed: int) -> None:
+    def __init__(self, stream: Any, path: Path, packed: Any) -> None:
         self._stream = stream
         self._path = path
-        self._compressed = max(compressed, 1)
+        self._packed = packed  # the file: how far it was read is held against what came out of it
         self._count = 0
 
     def read(self, limit: int = -1) -> bytes:
@@ -53,7 +54,7 @@ class LimitedStream:
             self._count += len(part)
             if self._count > DECOMPRESSED_BYTES:
                 raise _too_large(self._path, "MB", DECOMPRESSED_BYTES >> 20)
-            if self._count > max(RATIO_FROM, COMPRESSION_RATIO * self._compressed):
+            if self._count > max(RATIO_FROM, COMPRESSION_RATIO * self._packed.tell()):
                 raise _too_large(self._path, "times its size", COMPRESSION_RATIO)
             parts.append(part)
             wanted -= len(part) if wanted > 0 else 0
@@ -132,7 +133,7 @@ def is_workbook(archive: zipfile.ZipFile) -> bool:
     return any(info.filename.startswith("xl/") for info in archive.infolist())
 
 
-def member_stream(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path, size: int) -> LimitedStream:
+def member_stream(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path) -> LimitedStream:
     """Open one member.
 
     Parameters
@@ -140,9 +141,7 @@ def member_stream(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path, s
     archive, info : ZipFile, ZipInfo
         The archive and its member.
     path : Path
-        The archive, for messages.
-    size : int
-        Bytes of the archive: what the member's own entry says of its size is not believed.
+        The archive, for messages. What the member's own entry says of its size is not believed.
 
     Raises
     ------
@@ -160,4 +159,4 @@ def member_stream(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path, s
     except Exception as error:  # a local header that is none, or of another name
         message = f"the compressed file is damaged or cut ({error})"
         raise FileFormatError(message, "copy it again from the logger", path=path) from error
-    return LimitedStream(stream, path, size)
+    return LimitedStream(stream, path, archive.fp)

@@ -48,7 +48,11 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         if stream.read(len(ZIP_MAGIC)) != ZIP_MAGIC:
             raise _nested(path)
         archive = opened_zip(stream, path)
-        found = {info.filename: info for info in members(archive)}
+        listed_members = members(archive)
+        found = {info.filename: info for info in listed_members}
+        if len(found) < len(listed_members):
+            message = "the zip archive holds two files of one name"
+            raise FileFormatError(message, "unpack it and name the file that is the log", path=path)
         if len(found) == 1:
             raise _nested(path)
         wanted = settings.table if settings is not None else None
@@ -59,10 +63,9 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
             lines = " or ".join(f"table = {toml_text(known)}" for known in list(found)[:4])
             remedy = f"write for this log in run.toml: {lines}" if lines else "pack the log again"
             raise FileFormatError(message, remedy, path=path)
-        size = path.stat().st_size
         with (
             tempfile.TemporaryDirectory() as folder,
-            member_stream(archive, found[name], path, size) as inner,
+            member_stream(archive, found[name], path) as inner,
         ):
             member = Path(folder) / "member"
             try:

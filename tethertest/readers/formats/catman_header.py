@@ -20,6 +20,8 @@ _ISO_DATE = re.compile(r"(\d{4})-(\d\d)-(\d\d)-\d\d:\d\d")
 #: rows of keys, before the rows of channels
 _KEY_LINES: Final = 8
 _HEADER_LINES: Final = 400
+#: of the longest number that a header states
+_DIGITS: Final = 18
 _AGAIN: Final = "copy the whole file from the logger again, or export it again from catman"
 #: what separates columns where SEPARATOR says nothing
 _SEPARATORS: Final = ("\t", ";", ",")
@@ -107,8 +109,8 @@ def _number(document: Document, keys: dict[str, tuple[str, int]], key: str) -> i
     if key not in keys:
         return None
     text, line = keys[key]
-    if not text.isdigit():
-        message = f"{key} is {text!r}, expected a whole number"
+    if not text.isdecimal() or len(text) > _DIGITS:
+        message = f"{key} is {text[:40]!r}, expected a whole number"
         raise FileFormatError(message, _AGAIN, path=document.path, line=line)
     return int(text)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.containers.choice import table_of
-from tethertest.readers.containers.limits import CELLS, COLUMNS, DEPTH, JSON_BYTES, OBJECTS
+from tethertest.readers.containers.limits import CELLS, COLUMNS, DEPTH, JSON_BYTES, JSON_LISTS, OBJECTS
 from tethertest.readers.containers.log import log_of
 from tethertest.readers.containers.table import Column, Numbers, refuse_settings
 from tethertest.readers.containers.tree import NAME_LISTS, UNIT_KEYS, Branch, Leaf, Records, Tree, facts_of
@@ -31,6 +31,9 @@ NAME = "json"
 _INT64_DIGITS: Final = 19
 #: a list of lists or objects, or an object: what begins otherwise is text with brackets in it
 _BEGINNING: Final = re.compile(r"\s*(?:\[\s*[\[{]|\{\s*[\"}])")
+#: escapes of letters beyond the first 65,536, which come in pairs
+_PAIR: Final = re.compile(rb"\\u[dD][89abAB][\da-fA-F]{2}\\u[dD][c-fC-F][\da-fA-F]{2}")
+_HALF: Final = re.compile(rb"\\u[dD][89a-fA-F][\da-fA-F]{2}")
 _Object: TypeAlias = dict[str, Any]
 
 
@@ -66,6 +69,13 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     if len(document.body) > JSON_BYTES:
         message = f"the JSON log has {len(document.body) >> 20} MB, expected at most {JSON_BYTES >> 20} MB"
         raise FileFormatError(message, "split the log, or export it as text or HDF5", path=path)
+    lists = document.body.count(b"[") + document.body.count(b"{")
+    if lists > JSON_LISTS:
+        message = f"the JSON log has {lists} lists and objects, expected at most {JSON_LISTS}"
+        raise FileFormatError(message, "split the log, or export it as text or HDF5", path=path)
+    if _HALF.search(_PAIR.sub(b"", document.body)):
+        message = "the JSON log has half of a pair of escapes (\\ud800), which is no letter"
+        raise FileFormatError(message, "export the names again, in UTF-8", path=path)
     content = _parsed(path, document.body)
     skip = settings.skip_rows if settings is not None else 0
     left_out: dict[str, str] = {}
@@ -97,6 +107,9 @@ def _parsed(path: Path, body: bytes) -> Any:
 
 
 def _object(path: Path, pairs: list[tuple[str, Any]]) -> _Object:
+    if len(pairs) > OBJECTS:
+        message = f"an object has {len(pairs)} keys, expected at most {OBJECTS}"
+        raise FileFormatError(message, "export the channels alone, as lists", path=path)
     found = dict(pairs)
     if len(found) < len(pairs):
         seen: set[str] = set()
@@ -134,7 +147,9 @@ def _branch(path: Path, here: str, value: _Object, skip: int, left_out: dict[str
             continue
         rows = item[skip:] if item and isinstance(item[0], list | dict) else item
         kinds = {type(row) for row in rows}
-        if kinds == {list}:
+        if kinds == {list} and not rows[0]:
+            left_out[f"{here}/{name}" if here else name or "rows"] = "holds rows of no values"
+        elif kinds == {list}:
             leaves.append(_matrix(path, name, rows, skip, value, units))
         elif kinds == {dict}:
             records.append(_records(path, name or "rows", rows, units))

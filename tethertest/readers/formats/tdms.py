@@ -192,6 +192,11 @@ def _opened(path: Path) -> Iterator[Any]:
         if status is not None and status.incomplete_final_segment:
             message = "the TDMS file is cut: its last segment is incomplete"
             raise FileFormatError(message, "copy the whole file from the logger again", path=path)
+        # a last chunk may be short; where it is the only one, npTDMS gives a channel what belongs to others
+        cut = (segment for segment in file._reader._segments if segment.final_chunk_lengths_override)
+        if any(segment.num_chunks == 1 for segment in cut):
+            message = "the TDMS file is damaged: a segment declares more samples than it holds"
+            raise FileFormatError(message, "copy the whole file from the logger again", path=path)
         yield file
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import hashlib
-import io
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -141,12 +140,15 @@ def opened(path: Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
     Raises
     ------
     FileFormatError
-        The file is missing, a folder, unreadable, or its compression is damaged, now or while it is read.
+        The file is missing, a folder, a device, unreadable, or its compression is damaged, now or later.
     """
     if path.is_dir():
         message = "found a folder, expected a log file"
         raise FileFormatError(message, "name one of the files in it", path=path)
     try:
+        if path.exists() and not path.is_file():  # it can be read once, or never ends
+            message = "found a pipe or a device, expected a file"
+            raise FileFormatError(message, "save the log as a file and name that", path=path)
         with path.open("rb") as file, _decompressed(path, file) as stream:
             yield stream, file
     except FileNotFoundError as error:
@@ -179,10 +181,9 @@ def read_bytes(path: Path, limit: int = -1) -> bytes:
 def _decompressed(path: Path, stream: BinaryIO) -> BinaryIO:
     """Return the log inside a gzip file or a zip archive of one; any other file as it is."""
     magic = stream.read(4)
-    size = stream.seek(0, io.SEEK_END)
     stream.seek(0)
     if magic.startswith(b"\x1f\x8b"):
-        return cast("BinaryIO", LimitedStream(gzip.GzipFile(fileobj=stream), path, size))
+        return cast("BinaryIO", LimitedStream(gzip.GzipFile(fileobj=stream), path, stream))
     if magic != ZIP_MAGIC:
         return stream
     archive = opened_zip(stream, path)
@@ -190,7 +191,7 @@ def _decompressed(path: Path, stream: BinaryIO) -> BinaryIO:
     if len(found) != 1 or is_workbook(archive):  # other readers choose among the members
         stream.seek(0)
         return stream
-    return cast("BinaryIO", member_stream(archive, found[0], path, size))
+    return cast("BinaryIO", member_stream(archive, found[0], path))
 
 
 def decode(path: Path, data: bytes, encoding: str, errors: str = "strict") -> str:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import codecs
 import re
+from collections import Counter
+from collections.abc import Iterator
 from typing import Final
 
 _BYTE_ORDER_MARKS: Final = (
@@ -18,6 +20,9 @@ _SAMPLE_BYTES: Final = 65536
 #: GB 2312 rows of symbols and of the common ideographs, as lead bytes
 SYMBOLS = range(0xA1, 0xAA)
 COMMON_IDEOGRAPHS = range(0xB0, 0xD8)
+#: Shift JIS rows of symbols, kana and the common ideographs, as lead bytes; Western text seldom has them
+_JAPANESE_LEADS: Final = range(0x81, 0x98)
+_FEWEST_JAPANESE: Final = 2
 
 
 def detect_encoding(data: bytes, *, complete: bool = True) -> str | None:
@@ -34,7 +39,7 @@ def detect_encoding(data: bytes, *, complete: bool = True) -> str | None:
     -------
     str or None
         ``ascii``, ``utf-8``, ``utf-8-sig``, ``utf-16``, ``utf-16-le``, ``utf-16-be``, ``gb18030``,
-        ``cp1252``.
+        ``cp932`` (Shift JIS), ``cp1252``.
     """
     for mark, encoding in _BYTE_ORDER_MARKS:
         if data.startswith(mark):
@@ -47,6 +52,10 @@ def detect_encoding(data: bytes, *, complete: bool = True) -> str | None:
         return "utf-8" if _is_text(data) else None
     if not _is_text(data):
         return None
+    if _decodes(data, "cp932", complete=complete):
+        text = codecs.getincrementaldecoder("cp932")("strict").decode(data, complete)
+        if is_japanese(Counter(japanese_characters(text))):
+            return "cp932"
     return "gb18030" if _is_chinese(data, complete=complete) else "cp1252"
 
 
@@ -95,3 +104,15 @@ def _is_chinese(data: bytes, *, complete: bool) -> bool:
     leads = [lead for run in runs for lead in run[::2]]
     common = sum(lead in SYMBOLS or lead in COMMON_IDEOGRAPHS for lead in leads)
     return common >= 0.8 * len(leads)
+
+
+def japanese_characters(text: str) -> Iterator[bool]:
+    """Yield for each character beyond ASCII whether it is a common one of Shift JIS."""
+    for character in text:
+        if not character.isascii():
+            yield character.encode("cp932")[0] in _JAPANESE_LEADS
+
+
+def is_japanese(characters: Counter[bool]) -> bool:
+    """Tell Shift JIS from Western and Chinese text: nearly all of its wide characters are common ones."""
+    return characters[True] >= max(_FEWEST_JAPANESE, 0.8 * characters.total())

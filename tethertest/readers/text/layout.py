@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from tethertest.errors import FileFormatError
+from tethertest.readers.containers.limits import COLUMNS
 from tethertest.readers.text.cells import (
     bare_unit,
     column_kind,
@@ -133,6 +134,12 @@ def _find_separator(
     candidates = _SEPARATORS if wanted is None else (SPELLINGS.get(wanted, wanted),)
     best: tuple[float, str, list[Line], int] | None = None
     for separator in candidates:
+        for number, text in plain:  # before they are split
+            count = len(text.split()) if separator == SPACES else text.count(separator) + 1
+            if count > COLUMNS:
+                message = f"found {count} columns, expected at most {COLUMNS}"
+                remedy = "export the channels of the log alone; perhaps rows and columns are swapped"
+                raise FileFormatError(message, remedy, path=path, line=number)
         lines = [Line(number, split_row(text, separator)) for number, text in plain]
         whole = lines[:-1] if len(lines) > 4 else lines
         tail = whole[-min(100, max(2, len(whole) // 2)) :]

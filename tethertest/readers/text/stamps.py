@@ -127,6 +127,7 @@ class StampParts:
     long_first: npt.NDArray[np.bool_]  #: (n,) the date begins with four digits
     dated: bool
     dotted: bool  #: points stand between the numbers of the dates
+    short: bool  #: no date has a year of four digits
     zoned: bool  #: some stamps have a zone
 
     def nanoseconds(self, order: str, path: Path, lines: npt.NDArray[np.int64]) -> Integers:
@@ -166,7 +167,7 @@ def split_stamps(characters: Characters, path: Path, lines: npt.NDArray[np.int64
     clock, zone = np.zeros(count, np.int64), np.zeros(count, np.int64)
     long_first = np.zeros(count, np.bool_)
     dated: set[bool] = set()
-    dotted, zoned = True, False
+    dotted, short, zoned = True, True, False
     for layout, chosen in _by_layout(characters):
         match = _match(layout)
         part = characters[chosen]
@@ -183,13 +184,14 @@ def split_stamps(characters: Characters, path: Path, lines: npt.NDArray[np.int64
                 date[place, chosen] = _number(part, match.span(name))
             long_first[chosen] = len(match["first"]) == 4
             dotted &= match["sign"] == "."
+            short &= max(len(match["first"]), len(match["third"])) < 4
         clock[chosen] = _clock(part, match)
         zone[chosen] = _offset(part, match)
         zoned |= match["zone"] is not None
     if len(dated) > 1:
         message = "some stamps have a date and some have none"
         raise FileFormatError(message, "export the log again with full stamps", path=path, line=int(lines[0]))
-    return StampParts(date, clock, zone, long_first, dated == {True}, dotted, zoned)
+    return StampParts(date, clock, zone, long_first, dated == {True}, dotted, short, zoned)
 
 
 def settle_order(blocks: Iterable[StampParts], wanted: str | None, path: Path, line: int) -> str:
@@ -207,29 +209,45 @@ def settle_order(blocks: Iterable[StampParts], wanted: str | None, path: Path, l
     Raises
     ------
     FileFormatError
-        All dates can be read as day and month and as month and day.
+        All dates can be read in more than one order.
     """
-    first: tuple[int, int] | None = None
-    alike = True
+    first: tuple[int, int, int] | None = None
+    possible = {"dmy", "mdy"}
+    first_as_second = first_as_third = True
     for parts in blocks:
+        one, two, three = parts.date
         if first is None:
-            first = int(parts.date[0, 0]), int(parts.date[1, 0])
+            first = int(one[0]), int(two[0]), int(three[0])
             if np.all(parts.long_first):
                 return "ymd"
             if wanted is not None:
                 return wanted
             if parts.dotted:
                 return "dmy"
-        day_first, month_first = bool(np.any(parts.date[0] > 12)), bool(np.any(parts.date[1] > 12))
-        if day_first != month_first:
-            return "dmy" if day_first else "mdy"
-        alike &= not day_first and bool(np.all(parts.date[0] == parts.date[1]))
-    if alike:
-        return "dmy"
-    message = "the dates can be read as day/month and as month/day"
-    if first is not None:
-        message = f"the date {first[0]}/{first[1]}/... can be read as day/month and as month/day"
-    remedy = 'set date_order = "dmy" or "mdy" for this log in run.toml'
+            if parts.short:
+                possible.add("ymd")
+        if np.any(one > 12):
+            possible.discard("mdy")
+        if np.any(one > 31):
+            possible.discard("dmy")
+        if np.any(two > 12):
+            possible -= {"dmy", "ymd"}
+        if not parts.short or np.any(three > 31):
+            possible.discard("ymd")
+        if len(possible) == 1:
+            return possible.pop()
+        first_as_second &= bool(np.all(one == two))
+        first_as_third &= bool(np.all(one == three))
+    alike = (first_as_second or "mdy" not in possible) and (first_as_third or "ymd" not in possible)
+    if alike or not possible:  # an impossible date is named when it is read
+        return "dmy" if "dmy" in possible or not possible else "mdy"
+    numbers = () if first is None else first[: 3 if "ymd" in possible else 2]
+    shown = "/".join([*map(str, numbers), *(["..."] if "ymd" not in possible else [])])
+    words = {"dmy": "day/month", "mdy": "month/day", "ymd": "year/month/day"}
+    ways = [words[order] for order in ("dmy", "mdy", "ymd") if order in possible]
+    message = f"the date {shown} can be read as {' and as '.join(ways)}"
+    choices = [f'"{order}"' for order in ("dmy", "mdy", "ymd") if order in possible]
+    remedy = f"set date_order = {' or '.join(choices)} for this log in run.toml"
     raise FileFormatError(message, remedy, path=path, line=line)
 
 

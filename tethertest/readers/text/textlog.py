@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, Final, TypeAlias
 
 from tethertest.errors import FileFormatError
+from tethertest.readers.containers.limits import LAYOUT_BYTES, LINE_BYTES
 from tethertest.readers.text.document import HEAD_BYTES, decode, nul_bytes, opened, read_bytes
 from tethertest.readers.text.encoding import detect_encoding
 from tethertest.readers.text.encoding_scan import encoding_of_blocks
@@ -47,11 +48,11 @@ class TextLog:
     bare_returns: bool  #: lines end with a carriage return alone
 
     def lines(self, count: int) -> list[str]:
-        """Return the first `count` lines."""
+        """Return the first `count` lines, fewer where they are long."""
         text = bytearray()
         for block in self.blocks():
             text += block.text[: block.size]
-            if text.count(b"\n") >= count:
+            if text.count(b"\n") >= count or len(text) > LAYOUT_BYTES:
                 break
         lines = text.replace(b"\r\n", b"\n").removesuffix(b"\n").split(b"\n", count)
         return [line.decode() for line in lines[:count]]
@@ -86,6 +87,13 @@ class TextLog:
             source = _Utf8(self, stream)
             carry = before = b""
             while True:
+                if len(carry) > LINE_BYTES:  # each further block would be searched and copied with it
+                    message = (
+                        f"found a line or blank lines of more than {LINE_BYTES >> 20} MB, which no log has"
+                    )
+                    raise FileFormatError(
+                        message, "cut that part out, or export the log again", path=self.path
+                    )
                 text = source.read(carry)
                 if progress is not None:
                     progress(file.tell(), total)

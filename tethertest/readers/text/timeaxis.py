@@ -88,6 +88,12 @@ def find_time(layout: Layout, path: Path, settings: Log | None) -> TimeColumns:
     if wrong is not None:
         raise _text_as_time(layout, path, wrong)
     nameless = not layout.names[0] or (layout.header_line is None and layout.numbered)
+    if layout.kinds[0] == "number" and nameless and _counts_rows(layout.first_column):
+        message = "the first column has no name and counts the rows, or whole seconds"
+        remedy = (
+            'write for this log in run.toml: rate = "100 Hz", or what it was ("1 Hz" if it counts seconds)'
+        )
+        raise FileFormatError(message, remedy, path=path, line=layout.first_line)
     if layout.kinds[0] == "number" and nameless and _rises(layout.first_column):
         remark = "the first column has no name and is taken as the time in seconds"
         return TimeColumns(counter=0, remarks=(remark,))
@@ -119,6 +125,13 @@ def _rises(cells: tuple[str, ...]) -> bool:
             continue
     steps = [later > earlier for earlier, later in pairwise(numbers)]
     return sum(steps) >= _RISING_STEPS * len(steps)
+
+
+def _counts_rows(cells: tuple[str, ...]) -> bool:
+    """Return whether the cells are whole numbers, each one more than the one before."""
+    if len(cells) < 2 or not all(cell.isdecimal() for cell in cells):
+        return False
+    return all(later - earlier == 1 for earlier, later in pairwise(map(int, cells)))
 
 
 def _text_as_time(layout: Layout, path: Path, column: int) -> FileFormatError:

@@ -118,6 +118,7 @@ def test_a_run_gives_lines_waves_and_fronts() -> None:
     assert by_places["up"] == pytest.approx(at_section["up"], rel=0.02)
     cable = truth["settings"]["cable"]
     speed = (cable["axial_stiffness_N"] / cable["mass_per_length_kg_per_m"]) ** 0.5
+    assert "of an axial wave length" in found["waves"]["remarks"][-1]
     low, high = found["waves"]["speed"]["interval"]
     assert low <= speed
     assert high is None or speed <= high

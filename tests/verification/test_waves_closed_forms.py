@@ -121,6 +121,19 @@ def test_the_largest_tension_is_told_to_the_row_of_its_gauge() -> None:
     assert response.time[row] == pytest.approx(response.time[int(np.argmin(velocity))], abs=0.011)
 
 
+def test_most_above_rest_is_told_apart_from_the_weight() -> None:
+    response = solved(1.6, 3.0)
+    found = largest_tension(response)
+    below_top = LENGTH * np.linspace(0.0, 1.0, 2001)
+    wave, r = 2.0 * np.pi * 1.6 / SPEED, 0.5  # k, and (R - Z)/(R + Z) for R = 3 Z
+    amplitude = IMPEDANCE * AMPLITUDE * 2.0 * np.pi * 1.6 * np.abs(1.0 + r * np.exp(-2j * wave * below_top))
+    amplitude /= abs(1.0 - r * np.exp(-2j * wave * LENGTH))
+    assert found.over_rest == pytest.approx(float(amplitude.max()), rel=0.02)
+    there = np.interp(LENGTH * (1.0 - found.over_rest_at), below_top, amplitude)
+    assert there == pytest.approx(float(amplitude.max()), rel=0.02)
+    assert found.over_rest_at < 0.2 < found.at
+
+
 def straight(frequency: float, top: Top) -> Scene:
     return replace(
         upright(frequency, 1.0),

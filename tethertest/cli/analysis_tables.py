@@ -130,6 +130,9 @@ def _print_waves(waves: dict[str, Any]) -> None:
             f"({low:.3g} to {high:.3g}), {largest['time']:.3f} s; bottom {largest['bottom']:.4g} N, "
             f"top {largest['top']:.4g} N"
         )
+        more = largest["over_rest"]
+        where = f"at {more['at']:.3g} of the length, {more['time']:.3f} s"
+        typer.echo(f"  most above rest: {more['value']:.4g} N {where}")
     for remark in waves["remarks"]:
         typer.echo(f"  waves: {remark}")
 

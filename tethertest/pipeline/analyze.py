@@ -24,7 +24,7 @@ from tethertest.pipeline.read_bare import settings_of_a_run
 from tethertest.pipeline.reservations import reservations
 from tethertest.pipeline.run_drive import MOTION, drive_channels, run_crank, run_drive
 from tethertest.pipeline.stored import run_of
-from tethertest.pipeline.wave_findings import measured_waves, medium_of, replayed_waves
+from tethertest.pipeline.wave_findings import measured_waves, medium_of, pattern_remarks, replayed_waves
 from tethertest.readers import load_run
 from tethertest.records.analysis import MEASURED, REPLAYED, Analysis, ChannelAnalysis
 from tethertest.records.channel import Channel, ConditionedRun, Window
@@ -159,6 +159,8 @@ def analyze_run(path: str, run: Run, measured: ConditionedRun, options: Options)
         notes.append("no drive: no lines were looked for")
     else:
         notes += resonance_notes(drive.frequency, naturals, _modulation(found, scene))
+        short = pattern_remarks(waves, medium, drive.frequency)
+        waves = replace(waves, remarks=(*waves.remarks, *short))
     return Analysis(
         path,
         run.file.id,

@@ -29,6 +29,8 @@ SETTLE: Final = 0.2
 SPAN: Final = 2.0
 #: a gauge this near to a station of the field is at it, fraction of the length
 SAME_PLACE: Final = 1e-9
+#: a cable shorter than this share of a wave length moves as one
+SHORT: Final = 0.05
 #: kinds of channels that see an axial wave
 FORCES: Final = ("tension", "strain")
 
@@ -41,6 +43,25 @@ def medium_of(scene: Scene, rig: Rig) -> Medium:
     share = 0.5 * math.hypot(stiffness, mass)
     impedance = math.sqrt(rest.axial_stiffness * rest.mass_per_length)
     return Medium(impedance, rest.wave_speed, rest.length, share, share)
+
+
+def pattern_remarks(findings: WaveFindings, medium: Medium, frequency: float) -> tuple[str, ...]:
+    """Say where waves were separated although the cable is too short for a pattern of them.
+
+    Parameters
+    ----------
+    findings : WaveFindings
+        Measured or replayed.
+    medium : Medium
+        The cable.
+    frequency : float
+        Of the drive [Hz].
+    """
+    share = medium.length * frequency / medium.speed
+    if share > SHORT or not findings.parts:
+        return ()
+    text = f"the cable is {share:.2g} of an axial wave length at the drive's frequency"
+    return (f"{text}: the ratio of its waves tells how the top yields, and there is no pattern along it",)
 
 
 def measured_waves(
@@ -165,14 +186,19 @@ def largest_tension(response: Response, start: float = 0.0, window: Window | Non
     relative = math.hypot(budget.numerical, budget.model or 0.0, budget.spread or 0.0)
     dynamic = max(value - float(field.maximum[0, column]), 0.0)
     near = field.position[along >= value - relative * dynamic]
-    begin = float(field.time[inside][row])
+    begins = field.time[inside]
+    more = highest - field.maximum[0]
+    instant, place = np.unravel_index(int(np.argmax(more)), more.shape)
     return LargestTension(
         at=float(field.position[column]),
-        time=_instant(response, float(field.position[column]), begin) + start,
+        time=_instant(response, float(field.position[column]), float(begins[row])) + start,
         value=value,
         at_interval=(float(near.min()), float(near.max())),
         bottom=float(along[0]),
         top=float(along[-1]),
+        over_rest=float(more[instant, place]),
+        over_rest_at=float(field.position[place]),
+        over_rest_time=_instant(response, float(field.position[place]), float(begins[instant])) + start,
     )
 
 

@@ -60,3 +60,6 @@ class LargestTension:
     at_interval: Interval  #: fractions where the largest tension comes within the stated error of it
     bottom: float  #: largest tension at the bottom [N]
     top: float  #: largest tension at the top [N]
+    over_rest: float  #: largest tension less that of the same place at rest [N]
+    over_rest_at: float  #: and its place: by its weight alone an upright cable's tension is largest on top
+    over_rest_time: float  #: [s]

@@ -49,6 +49,11 @@ def analysis_summary(analysis: Analysis) -> dict[str, Any]:
                 "value": largest.value,
                 "bottom": largest.bottom,
                 "top": largest.top,
+                "over_rest": {
+                    "value": largest.over_rest,
+                    "at": largest.over_rest_at,
+                    "time": largest.over_rest_time,
+                },
             },
             "remarks": list(waves.remarks),
         },

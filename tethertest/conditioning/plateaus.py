@@ -37,8 +37,8 @@ COARSE = 0.15
 #: where more than this share of the values repeats the one before, a run must be so many times longer than
 #: the longest that does not look stuck
 OFTEN, LONGER = 0.1, 5.0
-#: a leap, or motion as fast just before, that shows that a value which may stand still was stuck: in digits
-#: or standard deviations, of an encoder (it counts several at a time) and of any other channel
+#: a leap, or motion as fast just before, that shows that a value which may stand still was stuck: in usual
+#: steps, of an encoder and of any other channel
 ENCODER_LEAP, LEAP = 20.0, 5.0
 #: motion before the run is measured over this time [s]
 APPROACH = 0.1
@@ -97,7 +97,7 @@ def plateaus_of(read: Reader, size: int, block: int, kind: str) -> Plateaus:
     encoder = kind == "displacement"
     if not np.any(runs.long) and encoder:
         return Plateaus(runs.pairs[:0], runs.level[:0], runs.pairs[:0])
-    digit, noise, turning = _resolution(read, size, runs)
+    digit, step, turning = _resolution(read, size, runs)
     coarse = turning < COARSE and digit > 0.0
     width = PLATEAU_WIDTH * (runs.high - runs.low)
     highest, lowest = runs.level >= runs.high - width, runs.level <= runs.low + width
@@ -113,7 +113,7 @@ def plateaus_of(read: Reader, size: int, block: int, kind: str) -> Plateaus:
     limits = np.unique(runs.level[saturated])
     stuck = runs.long & ~np.isin(runs.level, limits) & ~slack & (improbable | encoder)
     if coarse or encoder or repeated > OFTEN:
-        leap = (ENCODER_LEAP if encoder else LEAP) * max(digit, noise)
+        leap = (ENCODER_LEAP if encoder else LEAP) * step
         own = float(np.max(runs.length[~stuck], initial=1.0))
         believed = np.inf if coarse or encoder else LONGER * own
         for number in np.flatnonzero(stuck & (runs.length <= believed)):
@@ -122,7 +122,11 @@ def plateaus_of(read: Reader, size: int, block: int, kind: str) -> Plateaus:
 
 
 def _resolution(read: Reader, size: int, runs: Repeats) -> tuple[float, float, float]:
-    """Return digit, white noise and share of turns of a channel where it does not stand still for long."""
+    """Return digit, usual step and share of turns of a channel where it does not stand still for long.
+
+    A usual step is the digit, the white noise or the middle one of the steps between samples that differ,
+    whichever is largest.
+    """
     count = min(PLACES, -(-size // SAMPLES))
     standing = runs.pairs[runs.long]
     parts = []
@@ -133,7 +137,9 @@ def _resolution(read: Reader, size: int, runs: Repeats) -> tuple[float, float, f
     steps = np.diff(moving)
     steps = steps[steps != 0.0]
     turns = np.count_nonzero(steps[1:] * steps[:-1] < 0.0)
-    return quantum(moving), white_noise(moving), turns / max(moving.size, 1)
+    digit = quantum(moving)
+    usual = float(np.median(np.abs(steps))) if steps.size else 0.0
+    return digit, max(digit, white_noise(moving), usual), turns / max(moving.size, 1)
 
 
 def _turns(read: Reader, size: int, runs: Repeats, number: int, digit: float) -> bool:

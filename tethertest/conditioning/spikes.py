@@ -28,6 +28,8 @@ FAR_AROUND, FAR_QUANTILE = 400, 0.985
 NEIGHBOURS_AGREE = 0.4
 #: the same value so many times, each time alone, is a logger's word for a lost sample
 FEWEST_DROPOUTS = 3
+#: and so far beyond all other values, in their range
+APART = 0.3
 #: an axial wave needs this long from end to end: what another channel shows so close is no spike [s]
 WAVE_DELAY = 0.008
 #: height of the other channel's answer, in standard deviations of one of its samples
@@ -106,7 +108,8 @@ def _dropouts(values: FloatArray, least: float, longest: int) -> BoolArray:
     rest = values[~dropout & ~np.isin(values, numbers)]
     if not numbers.size or not rest.size:
         return np.zeros(values.size, dtype=bool)
-    beyond = (numbers < np.min(rest)) | (numbers > np.max(rest))
+    margin = APART * float(np.max(rest) - np.min(rest))
+    beyond = (numbers < np.min(rest) - margin) | (numbers > np.max(rest) + margin)
     return np.asarray(np.isin(values, numbers[beyond]), dtype=bool)
 
 

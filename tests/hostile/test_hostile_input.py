@@ -13,7 +13,13 @@ from hostile_cases import CASES, MEMORY, SECONDS, faults, told
 
 #: cases that one process can be asked together
 TOGETHER: Final = [case for case in CASES if case.command == INSPECT and not case.slow]
-RUNS: Final = [case for case in CASES if case.kind == "run" and case.command[0] == "inspect"]
+RUNS: Final = [
+    case
+    for case in CASES
+    if case.kind == "run" and case.command[0] == "inspect" and not case.slow and case.command[-1] != "{}"
+]
+#: each with a folder of rigs, a command or a time of its own
+ALONE: Final = [case for case in CASES if case not in TOGETHER and case not in RUNS]
 
 
 def placed(case: Case, folder: Path) -> Path:
@@ -53,14 +59,12 @@ def test_hostile_input_is_refused_or_read_right(tmp_path):
 
 
 def test_hostile_run_folders_are_refused(tmp_path):
-    """Each with a folder of rigs of its own is left to the table."""
-    cases = [case for case in RUNS if not case.slow and case.command[-1] != "{}"]
-    asked_together(cases, ("--rigs", cases[0].command[-1]), tmp_path)
+    asked_together(RUNS, ("--rigs", RUNS[0].command[-1]), tmp_path)
 
 
 @pytest.mark.verify
-@pytest.mark.parametrize("case", CASES, ids=lambda case: re.sub(r"[^\x20-\x7e]", "?", case.title))
-def test_each_in_a_process_of_its_own(case, tmp_path):
+@pytest.mark.parametrize("case", ALONE, ids=lambda case: re.sub(r"[^\x20-\x7e]", "?", case.title))
+def test_the_others_each_in_a_process_of_its_own(case, tmp_path):
     placed(case, tmp_path)
     words = tuple(word.replace("{}", case.file) for word in case.command)
     assert faults(case, hostile_door.run(words, tmp_path), written(tmp_path)) == []

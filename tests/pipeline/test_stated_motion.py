@@ -51,6 +51,8 @@ def test_healthy_load_cells_are_not_accused_where_no_motion_was_measured(tmp_pat
     assert [log.file for log in run.file.log] == ["tension.asc", "fbg.txt"]
     measured = conditioned(run, read_logs(run))
     assert not [finding for finding in measured.findings if finding.kind == ACCUSED]
+    part = run_part(folder, Options(rigs=RIGS))
+    assert (part.amplitude, part.amplitude_measured) == (part.nominal_amplitude, False)
 
 
 def test_analyze_says_what_the_report_says_of_a_motion_that_is_not_as_stated(halved: Path) -> None:

@@ -151,10 +151,12 @@ def _analysed(part: RunPart, run: Run, measured: ConditionedRun, options: Option
     stated = drive_findings(run, measured, analysis.drive)
     # a setting in doubt puts its run at a wrong place of a curve, or on a wrong one
     doubt = "; ".join(finding.text for finding in stated if finding.kind == AMPLITUDE)
+    amplitude = _motion_amplitude(analysis)
     return replace(
         part,
         frequency=analysis.drive.frequency,
-        amplitude=_motion_amplitude(analysis) or part.nominal_amplitude,
+        amplitude=part.nominal_amplitude if amplitude is None else amplitude,
+        amplitude_measured=amplitude is not None,
         channels=tuple(
             _channel(item, measured.rest_before, analysis.window, analysis.drive.frequency, doubt)
             for item in analysis.channels

@@ -182,6 +182,7 @@ class RunPart:
     nominal_frequency: float | None = None  #: [Hz]
     amplitude: float | None = None  #: of the bottom motion at the drive, measured where it can be [m]
     nominal_amplitude: float | None = None  #: [m]
+    amplitude_measured: bool = False  #: else it is the nominal one
     from_rest: bool = False  #: a rest was found before the drive
     axial_stiffness: float | None = None  #: [N]
     length: float | None = None  #: of the cable [m]

@@ -89,6 +89,7 @@ def _run(part: RunPart) -> dict[str, Any]:
         "frequency": part.frequency,
         "nominal_frequency": part.nominal_frequency,
         "amplitude": part.amplitude,
+        "amplitude_measured": part.amplitude_measured,
         "nominal_amplitude": part.nominal_amplitude,
         "refused": part.refused or None,
         "remarks": list(part.remarks),

@@ -7,8 +7,8 @@ where the cable is slack, and where a slow motion turns. There a channel was stu
 by a leap or came to it too fast, and was at its limit only if the values next to the limit are passed too
 quickly for a motion that turns by itself. In between, where a value often repeats but noise is seen, the
 noise may be quieter at times: there a run without a leap must be much longer than all that are the channel's
-own. A slack cable rests: at the lowest value of coarse digits, and at a tension of exactly zero, as
-calculated records without noise have it.
+own. A slack cable rests: at the lowest value of coarse digits, and at a tension of exactly zero. Calculated
+records, which have no noise, are taken like coarse digits.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def plateaus_of(read: Reader, size: int, block: int, kind: str) -> Plateaus:
     if not np.any(runs.long) and encoder:
         return Plateaus(runs.pairs[:0], runs.level[:0], runs.pairs[:0])
     digit, step, turning = _resolution(read, size, runs)
-    coarse = turning < COARSE and digit > 0.0
+    coarse = turning < COARSE
     width = PLATEAU_WIDTH * (runs.high - runs.low)
     highest, lowest = runs.level >= runs.high - width, runs.level <= runs.low + width
     repeated = runs.share(highest | lowest)
@@ -125,7 +125,7 @@ def _resolution(read: Reader, size: int, runs: Repeats) -> tuple[float, float, f
     """Return digit, usual step and share of turns of a channel where it does not stand still for long.
 
     A usual step is the digit, the white noise or the middle one of the steps between samples that differ,
-    whichever is largest.
+    whichever is largest. A channel that never moves is judged like one with noise.
     """
     count = min(PLACES, -(-size // SAMPLES))
     standing = runs.pairs[runs.long]
@@ -139,7 +139,8 @@ def _resolution(read: Reader, size: int, runs: Repeats) -> tuple[float, float, f
     turns = np.count_nonzero(steps[1:] * steps[:-1] < 0.0)
     digit = quantum(moving)
     usual = float(np.median(np.abs(steps))) if steps.size else 0.0
-    return digit, max(digit, white_noise(moving), usual), turns / max(moving.size, 1)
+    turning = turns / moving.size if steps.size else 1.0
+    return digit, max(digit, white_noise(moving), usual), turning
 
 
 def _turns(read: Reader, size: int, runs: Repeats, number: int, digit: float) -> bool:

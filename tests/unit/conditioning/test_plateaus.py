@@ -75,10 +75,18 @@ def test_a_cable_that_is_slack_in_coarse_digits_is_no_amplifier_at_its_limit():
         assert not marked(time, rounded, Flag.STUCK | Flag.SATURATED, "tension").any()
 
 
-def test_a_calculated_record_may_be_slack_for_long():
+def test_a_calculated_record_may_be_slack_for_long_and_rest():
     time = np.arange(30_000) / 500.0
-    tension = np.maximum(np.sin(2.0 * np.pi * 0.25 * time) + 0.4, 0.0) * 10.0
-    assert not marked(time, tension, Flag.STUCK | Flag.SATURATED, "tension").any()
+    moving = np.clip(time - 10.0, 0.0, 31.0)  # it stops where the cable is slack
+    tension = np.maximum(np.sin(2.0 * np.pi * 0.25 * moving) + 0.4, 0.0) * 10.0
+    for kind in ("tension", "strain"):
+        assert not marked(time, tension, Flag.STUCK | Flag.SATURATED, kind).any()
+    assert marked(time, np.minimum(tension, 12.0), Flag.SATURATED).sum() == np.count_nonzero(tension >= 12.0)
+
+
+def test_a_channel_that_never_moves_is_at_a_limit():
+    time = np.arange(3000) / 500.0
+    assert marked(time, np.full(3000, 4.2), Flag.STUCK | Flag.SATURATED).all()
 
 
 def test_a_dead_channel_is_stuck_where_its_noise_was_seen():

@@ -112,7 +112,6 @@ class Comparison:
         self.slow, self.fast = (pair.reference, pair.clock) if self.swapped else (pair.clock, pair.reference)
         self.noisy_slow = _floor(self.slow, cutoff) > _floor(self.fast, cutoff)
         self.spans, self.only, self.systematic = spans, slowest == 0.0, systematic
-        self.slowest = slowest
         self.time = self.slow.time
         self._fast = CubicSpline(self.fast.time, self.fast.values)
         self._slope = self._fast.derivative()
@@ -321,12 +320,7 @@ def _step(
     weighted[use] = left - wanted @ solution
     shortest = min((stop - start for start, stop in comparison.spans), default=np.inf)
     noise = noise_of(
-        weighted,
-        count,
-        scale.size + 2 - comparison.levels.shape[1],
-        comparison.slow.step,
-        shortest if comparison.only else np.inf,
-        comparison.slowest,
+        weighted, count, scale.size + 2, comparison.slow.step, shortest if comparison.only else np.inf
     )
     centred = values - np.mean(values)
     clock_is_model = comparison.swapped == comparison.noisy_slow

@@ -56,9 +56,7 @@ class Noise:
         return np.asarray((np.conj(transformed).T @ weighted).real / self.size, dtype=np.float64)
 
 
-def noise_of(
-    residual: FloatArray, count: int, parameters: int, step: float, shortest: float, slowest: float = 0.0
-) -> Noise:
+def noise_of(residual: FloatArray, count: int, parameters: int, step: float, shortest: float) -> Noise:
     """Return the noise that a residual shows.
 
     Parameters
@@ -73,21 +71,13 @@ def noise_of(
         Between samples [s].
     shortest : float
         Length of the shortest stretch of known samples [s]: nothing finer than its reciprocal is resolved.
-    slowest : float
-        Below this frequency the fit was free and left nothing [Hz]: the noise there is that next to it.
     """
     from scipy.fft import next_fast_len
 
     size = int(next_fast_len(int(residual.size * (1.0 + MARGIN)) + 1, real=True))
     power = np.abs(np.fft.rfft(residual, size)) ** 2 / max(count, 1)
     width = max(SMOOTHING, 2.0 / shortest) * size * step
-    left = (np.arange(power.size) >= slowest * size * step).astype(np.float64)
-    # without its empty bins a mean next to them is not too small
-    length = max(width, FEWEST_BINS)
-    known = moving_mean(left, length)
-    smoothed = moving_mean(power * left, length) / np.maximum(known, 1e-9)
-    first = int(np.argmax(left > 0.0))
-    smoothed[:first] = smoothed[first]
+    smoothed = moving_mean(power, max(width, FEWEST_BINS))
     raw = Noise(np.asarray(smoothed, dtype=np.float64), size, count)
     free = max(raw.independent - parameters, 1.0)
     return Noise(raw.spectrum * raw.independent / free, size, count)

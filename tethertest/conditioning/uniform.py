@@ -20,9 +20,8 @@ THINNED = 5.5
 SAMPLES_PER_PERIOD, SPARSEST = 10.0, 20.0
 #: hum is followed over this time: the mains may wander by a tenth of a hertz [s]
 HUM_SPAN = 1.0
-#: a low-pass carries a bad sample this many periods of its cut-off far: of a leap 1e-4 is left there, less
-#: than a tenth of the noise in the clearest records; after one period it is 1.5e-3, as much as their noise
-FILTER_REACH = 1.5
+#: a low-pass carries a bad sample this many periods of its cut-off far
+FILTER_REACH = 1.0
 #: stamps within this fraction of a step of equal spacing are taken as they are, else the values are
 #: interpolated
 REGULAR = 0.01

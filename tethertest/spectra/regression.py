@@ -137,6 +137,9 @@ def channel_blocks(channel: Channel, window: Window, frequency: float, mains: fl
             f"of {frequency:.4g} Hz, expected at least {FEWEST_PERIODS:g}"
         )
         raise DataError(message, "choose a longer window")
+    if not np.any(blocks.values):
+        message = f"channel {channel.name!r} is zero from {window.start:g} s to {window.stop:g} s"
+        raise DataError(message, "check that the sensor was connected, or take the channel out")
     return blocks
 
 

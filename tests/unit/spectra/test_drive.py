@@ -8,7 +8,8 @@ import pytest
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Flag, Window
-from tethertest.spectra import fit_drive
+from tethertest.records.lines import Expectation
+from tethertest.spectra import find_lines, fit_drive
 
 from .conftest import Maker, autoregressive, cosine
 
@@ -107,3 +108,12 @@ def test_holes_that_fold_orders_on_each_other_are_refused(
     record = channel(time, cosine(time, 0.25)).with_flags(np.arange(2048) % 30 != 0, Flag.MISSING)
     with pytest.raises(DataError, match=r"tell the frequencies apart|too few"):
         fit_drive([record], window, 0.25)
+
+
+def test_a_channel_that_is_zero_throughout_is_named(channel: Maker, time: FloatArray, window: Window) -> None:
+    silent = channel(time, np.zeros(time.size), name="velocity at the top")
+    moving = channel(time, cosine(time, 0.25) + 0.1 * np.random.default_rng(11).standard_normal(2048))
+    drive = fit_drive([silent, moving], window, 0.25)
+    assert drive.channels == ("tension_top",)
+    with pytest.raises(DataError, match="'velocity at the top' is zero from"):
+        find_lines(silent, window, drive, Expectation())

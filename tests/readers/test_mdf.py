@@ -197,6 +197,9 @@ OLD = {
     ),
     "a block far away": (put(b"DG", 8, "<I", 10**9), "no block CG lies at byte 1000000000"),
     "channels that are not there": (put(b"CG", 18, "<H", 9), "declares 9 channels and lists 2"),
+    "a channel outside of its record": (put(b"CN", 186, "<H", 256, 1), "ends at bit 320 of a record of 128"),
+    "a channel far outside": (put(b"CN", 226, "<H", 256, 1), "of a record of 128"),
+    "a float of three bytes": (put(b"CN", 188, "<H", 24, 1), "floating-point numbers of 24 bits"),
 }  # fmt: skip
 
 

@@ -42,6 +42,11 @@ _IS_VARIABLE: Final = 1
 VIRTUAL: Final = {3, 6}
 #: data types of floating-point numbers, in either order of their bytes
 _FLOATS: Final = {4, 5}
+#: the same in version 3
+_FLOATS_3: Final = {2, 3, 11, 12, 15, 16}
+#: bytes of a channel in version 3, without and with the bytes that its place lies farther on
+_CHANNEL_3: Final = 218
+_CHANNEL_3_FAR: Final = 228
 #: declarations that make an XML text grow without end
 _DECLARATIONS: Final = (b"<!DOCTYPE", b"<!ENTITY")
 
@@ -208,7 +213,10 @@ def check_level_3(path: Path, data: bytes) -> None:
         start, size = lists.link(place, 3), 0
         for group in lists.chain(lists.link(place, 1), b"CG"):
             _, count, width, cycles = struct.unpack_from(f"{order}3HI", data, group + 16)
-            found = sum(1 for _ in lists.chain(lists.link(group, 1), b"CN"))
+            found = 0
+            for channel in lists.chain(lists.link(group, 1), b"CN"):
+                lists.check_channel(channel, width)
+                found += 1
             if found != count:
                 raise _damaged(path, f"a group declares {count} channels and lists {found}")
             size += cycles * (width + identifier)
@@ -245,6 +253,22 @@ class _Lists:
                 raise _damaged(self.path, f"the block at byte {place} declares {length} bytes")
             yield place
             place = self.link(place, 0)
+
+    def check_channel(self, place: int, width: int) -> None:
+        """Refuse a channel that lies outside of its record."""
+        (length,) = struct.unpack_from(f"{self.order}H", self.data, place + 2)
+        if length < _CHANNEL_3:
+            raise _damaged(self.path, f"the channel at byte {place} declares {length} bytes")
+        bit, bits, form = struct.unpack_from(f"{self.order}3H", self.data, place + 186)
+        byte = 0
+        if length >= _CHANNEL_3_FAR:
+            (byte,) = struct.unpack_from(f"{self.order}H", self.data, place + 226)
+        if form in _FLOATS_3 and bits not in {32, 64}:
+            raise _damaged(self.path, f"a channel holds floating-point numbers of {bits} bits")
+        if byte + -(-(bit + bits) // 8) > width:
+            raise _damaged(
+                self.path, f"a channel ends at bit {8 * byte + bit + bits} of a record of {8 * width}"
+            )
 
 
 def _check_cells(path: Path, cells: int) -> None:

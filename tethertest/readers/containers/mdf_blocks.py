@@ -35,6 +35,8 @@ _LISTED: Final = {
     b"##FH": range(1), b"##AT": range(1), b"##EV": range(1), b"##CH": range(2), b"##DL": range(1),
     b"##LD": range(1), b"##HL": range(1),
 }  # fmt: skip
+#: links that a block has at least; asammdf looks for what follows them at a fixed place
+_LINKS: Final = {b"##HD": 6, b"##DG": 4, b"##CG": 6, b"##CN": 8, b"##CC": 4, b"##SI": 3, b"##DL": 1}
 _PLAIN_DATA: Final = {b"##DT", b"##DV", b"##DI", b"##SD", b"##RD", b"##RV", b"##RI"}
 #: a group whose records have a length each
 _IS_VARIABLE: Final = 1
@@ -113,6 +115,8 @@ def _block(path: Path, data: bytes, place: int) -> _Block:
     if place == _FIRST and kind != b"##HD":
         raise _damaged(path, "it does not begin with a header block")
     links = struct.unpack_from(f"<{count}Q", data, place + _HEAD.size)
+    if count < _LINKS.get(kind, 0):
+        raise _damaged(path, f"the block {kind.decode()} at byte {place} has {count} links")
     if kind == b"##MD" and any(mark in data[start : place + length].upper() for mark in _DECLARATIONS):
         raise _damaged(path, "a comment declares XML entities, which no log needs")
     return _Block(kind, links, start, place + length)
@@ -120,12 +124,12 @@ def _block(path: Path, data: bytes, place: int) -> _Block:
 
 def _check_group(path: Path, data: bytes, blocks: dict[int, _Block], group: _Block) -> int:
     """Compare the records that the groups of channels declare with the data; return the count of cells."""
-    if len(group.links) < 3 or group.end - group.start < 1:
-        raise _damaged(path, "a group of data has no links")
+    if group.end == group.start:
+        raise _damaged(path, "a group of data has no identifier")
     identifier = data[group.start]
     declared, cells, is_exact = 0, 0, True
     for channels in _chain(blocks, group.links[1]):
-        if channels.kind != b"##CG" or channels.end - channels.start < _GROUP.size or len(channels.links) < 2:
+        if channels.kind != b"##CG" or channels.end - channels.start < _GROUP.size:
             raise _damaged(path, "a group of channels is none")
         _, cycles, flags, _, size, invalid = _GROUP.unpack_from(data, channels.start)
         if flags & _IS_VARIABLE:

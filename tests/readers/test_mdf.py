@@ -172,6 +172,7 @@ HOSTILE = {
     "a block too long": (put(b"##CN", 8, "<Q", 2**62), "declares 4611686018427387904 bytes"),
     "a block of many links": (put(b"##CN", 16, "<Q", 2**40), "the block at byte"),
     "a channel without links": (put(b"##CN", 16, "<Q", 0, 1), "has 0 links"),
+    "a group followed by the header": (put(b"##DG", 24, "<Q", 64), "is of the kind b'##HD'"),
     "a group of few links": (put(b"##CG", 16, "<Q", 2), "has 2 links"),
     "not finalised": (lambda data: b"UnFinMF " + data[8:60] + b"\5" + data[61:], "was not finalised"),
     "another version": (lambda data: data.replace(b"4.10", b"5.00", 1), "found MDF of version '5.00'"),

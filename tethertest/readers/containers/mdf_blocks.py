@@ -37,6 +37,8 @@ _LISTED: Final = {
 }  # fmt: skip
 #: links that a block has at least; asammdf looks for what follows them at a fixed place
 _LINKS: Final = {b"##HD": 6, b"##DG": 4, b"##CG": 6, b"##CN": 8, b"##CC": 4, b"##SI": 3, b"##DL": 1}
+#: what the first link of a kind leads to; asammdf reads on there without a look at the kind
+_NEXT: Final = {b"##HD": b"##DG", b"##DG": b"##DG", b"##CG": b"##CG", b"##CN": b"##CN"}
 _PLAIN_DATA: Final = {b"##DT", b"##DV", b"##DI", b"##SD", b"##RD", b"##RV", b"##RI"}
 #: a group whose records have a length each
 _IS_VARIABLE: Final = 1
@@ -99,6 +101,10 @@ def _blocks(path: Path, data: bytes) -> dict[int, _Block]:
         for number in _LISTED.get(block.kind, ()):
             reached[block.links[number] if number < len(block.links) else 0] += 1
         waiting += block.links
+    for place, block in found.items():
+        after = found.get(block.links[0]) if block.kind in _NEXT else None
+        if after is not None and after.kind != _NEXT[block.kind]:
+            raise _damaged(path, f"the block after that at byte {place} is of the kind {after.kind!r}")
     reached.pop(0, None)
     if any(count > 1 for count in reached.values()):
         raise _damaged(path, "a list of its blocks leads back to itself")

@@ -1,29 +1,32 @@
 """Crash safety of the run store: a real ingest is killed at random instants and starved of disk.
 
 ``python -m tethertest.studies.crash_safety 200 -o FILE``: half of the instants are random times over the
-whole life of the process, half are random steps of the writing phase, before, in the middle of or after a
-write, a synchronisation or the rename. After each, the store must be the old one or the new one to the byte,
-and raw logs as they were. Then file-size limits from nothing to just enough, each of which must end in a
-plain message.
+whole life of an ingest, which begins with its libraries loaded; half are random steps of the writing phase,
+before, in the middle of or after a write, a synchronisation or the rename. After each, the store must be the
+old one or the new one to the byte, and raw logs as they were. Then file-size limits from nothing to just
+enough, each of which must end in a plain message.
 """
 
 from __future__ import annotations
 
 import argparse
 import hashlib
+import io
+import multiprocessing
 import os
 import random
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from tethertest.store import load_store
 from tethertest.store.whole import WholeFile
@@ -34,6 +37,9 @@ _MODULE = "tethertest.studies.crash_safety"
 LIMITS = 50
 #: where the instants come from
 SEED = 20
+#: each ingest is a process of its own, forked from one that has loaded the libraries
+_FORKS: Final = multiprocessing.get_context("forkserver")
+_FORKS.set_forkserver_preload(["tethertest.pipeline.ingest", "tethertest.cli.ingest"])
 #: after so many kills the next ingest is let end, to see that it takes left-overs away
 _CLEANED = 5
 _BAD_INPUT = 2
@@ -75,20 +81,32 @@ class Battery:
 
     def _reference(self, name: str) -> bytes:
         made = self.scratch / f"{name}.h5"
-        start = time.perf_counter()
-        self.command(made).check_returncode()
-        self.life = time.perf_counter() - start  #: of the latest undisturbed ingest [s]
+        for _ in range(2):  # the first one waits until the libraries are loaded
+            made.unlink(missing_ok=True)
+            start = time.perf_counter()
+            code, said = self.ended(made)
+            self.life = time.perf_counter() - start  #: of the latest undisturbed ingest [s]
+            if code:
+                message = f"an ingest that nobody disturbs ends with exit {code}: {said}"
+                raise RuntimeError(message)
         return made.read_bytes()
 
-    def command(self, store: Path, **settings: Any) -> subprocess.CompletedProcess[str]:
-        """Run one ingest to its end."""
-        return subprocess.run(self.words(store), capture_output=True, text=True, check=False, **settings)
+    def started(self, store: Path, *, step: int | None = None, limit: int | None = None) -> BaseProcess:
+        """Start an ingest, which kills itself at a step, or may write no file beyond a limit in bytes."""
+        words = ["ingest", str(self.run), "--rigs", str(self.rigs), "-o", str(store)]
+        self._said, said = _FORKS.Pipe(duplex=False)
+        process = _FORKS.Process(target=_ingest, args=(words, said, step, limit))
+        process.start()
+        said.close()
+        return process
 
-    def words(self, store: Path, step: int | None = None) -> list[str]:
-        """Return the command line of an ingest, which kills itself at a step if it is told one."""
-        ingest = ["ingest", str(self.run), "--rigs", str(self.rigs), "-o", str(store)]
-        module = ["-m", "tethertest.cli"] if step is None else ["-m", _MODULE, "--die-at", str(step)]
-        return [sys.executable, *module, *ingest]
+    def ended(self, store: Path, **settings: int) -> tuple[int | None, str]:
+        """Let one ingest end; return its exit code and what it said."""
+        process = self.started(store, **settings)
+        with open(self._said.fileno(), encoding="utf-8", closefd=False) as pipe:
+            said = pipe.read()
+        process.join()
+        return process.exitcode, said
 
     def put_old(self) -> None:
         """Put the old store where the new one goes."""
@@ -118,34 +136,30 @@ class Battery:
 
     def clean(self, tally: Tally, where: str) -> None:
         """Let the next ingest end, and see that it took the left-overs away."""
-        ended = self.command(self.store)
-        if ended.returncode or self.left() or self.state() != "new":
-            tally.faults.append(f"{where}: the next ingest left {self.left()}, exit {ended.returncode}")
+        code, _ = self.ended(self.store)
+        if code or self.left() or self.state() != "new":
+            tally.faults.append(f"{where}: the next ingest left {self.left()}, exit {code}")
 
 
 def kill_at_random(battery: Battery, instants: int, chance: random.Random, tally: Tally) -> None:
     """Kill ingests: at random times, and at random steps of the writing phase, by turns."""
     battery.put_old()
-    counted = subprocess.run(
-        battery.words(battery.store, sys.maxsize), capture_output=True, text=True, check=True
-    )
-    tally.steps = int(counted.stderr.rsplit(maxsplit=1)[-1])
+    _, said = battery.ended(battery.store, step=sys.maxsize)
+    tally.steps = int(said.rsplit(maxsplit=1)[-1])
     for instant in range(instants):
         battery.put_old()
         if instant % 2:
             step = chance.randrange(tally.steps)
-            done = subprocess.run(battery.words(battery.store, step), capture_output=True, check=False)
-            if done.returncode != -signal.SIGKILL:
-                tally.faults.append(f"step {step}: exit {done.returncode}, expected a kill")
+            code, _ = battery.ended(battery.store, step=step)
+            if code != -signal.SIGKILL:
+                tally.faults.append(f"step {step}: exit {code}, expected a kill")
             battery.look(tally, "step of the writing phase", f"step {step}")
         else:
             delay = chance.uniform(0.0, 1.1 * battery.life)
-            process = subprocess.Popen(
-                battery.words(battery.store), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-            )
+            process = battery.started(battery.store)
             time.sleep(delay)
-            process.send_signal(signal.SIGKILL)
-            process.wait()
+            process.kill()
+            process.join()
             battery.look(tally, "time in the process's life", f"{delay:.3f} s")
         if len(battery.left()) > 1:
             tally.faults.append(f"instant {instant}: left-overs pile up")
@@ -159,22 +173,13 @@ def starve(battery: Battery, limits: int, tally: Tally) -> None:
     for number in range(limits):
         limit = size * number // limits if number + 1 < limits else size - 1
         battery.put_old()
-        ended = battery.command(battery.store, preexec_fn=_limited(limit))
-        plain = ended.returncode == _BAD_INPUT and "fix:" in ended.stderr and "Traceback" not in ended.stderr
+        code, said = battery.ended(battery.store, limit=limit)
+        plain = code == _BAD_INPUT and "fix:" in said and "Traceback" not in said
         tally.outcomes["file-size limit", "plain message"] += plain
         tally.outcomes["file-size limit", battery.state()] += 1
         tally.outcomes["file-size limit", "left-over"] += bool(battery.left())
         if not plain or battery.state() != "old" or battery.left():
-            tally.faults.append(f"limit {limit}: exit {ended.returncode}, {ended.stderr[-200:]!r}")
-
-
-def _limited(limit: int) -> Callable[[], None]:
-    def apply() -> None:
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-
-    return apply
+            tally.faults.append(f"limit {limit}: exit {code}, {said[-200:]!r}")
 
 
 def table(tally: Tally, run: str) -> str:
@@ -208,10 +213,25 @@ def run_battery(run: Path, rigs: Path, instants: int, limits: int) -> Tally:
     return tally
 
 
-def _die_at(step: int, arguments: list[str]) -> None:
-    """Run the command line and kill the process at a step of the writing phase; say how many there were."""
-    import runpy
+def _ingest(words: list[str], said: Connection, step: int | None, limit: int | None) -> None:
+    """Run the command line in this process; what it says goes into a pipe."""
+    import resource
 
+    from tethertest.cli import main as typed
+
+    pipe = io.FileIO(said.fileno(), "w", closefd=False)
+    sys.stdout = sys.stderr = io.TextIOWrapper(pipe, encoding="utf-8", write_through=True)
+    sys.argv = ["tethertest", *words]
+    if limit is not None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+    if step is None:
+        typed()
+    else:
+        _die_at(step, typed)
+
+
+def _die_at(step: int, work: Callable[[], object]) -> None:
+    """Do the work and kill the process at a step of the writing phase; say how many there were."""
     taken = 0
 
     def count() -> None:
@@ -242,17 +262,14 @@ def _die_at(step: int, arguments: list[str]) -> None:
         return renamed
 
     WholeFile.write, os.fsync, Path.replace = counted_write, counted_sync, counted_rename  # type: ignore[method-assign,assignment]
-    sys.argv = ["tethertest", *arguments]
     try:
-        runpy.run_module("tethertest.cli", run_name="__main__", alter_sys=True)
+        work()
     finally:
         sys.stderr.write(f"steps {taken}\n")
 
 
 def main(arguments: list[str]) -> int:
     """Run the battery, print and write its table, and return the exit code: 1 where anything was at fault."""
-    if arguments[:1] == ["--die-at"]:
-        _die_at(int(arguments[1]), arguments[2:])
     parser = argparse.ArgumentParser(prog=f"python -m {_MODULE}")
     parser.add_argument("instants", nargs="?", type=int, default=200)
     parser.add_argument("-o", "--output", type=Path)

@@ -15,6 +15,7 @@ import io
 import multiprocessing
 import os
 import random
+import runpy
 import shutil
 import signal
 import sys
@@ -217,17 +218,20 @@ def _ingest(words: list[str], said: Connection, step: int | None, limit: int | N
     """Run the command line in this process; what it says goes into a pipe."""
     import resource
 
-    from tethertest.cli import main as typed
-
     pipe = io.FileIO(said.fileno(), "w", closefd=False)
     sys.stdout = sys.stderr = io.TextIOWrapper(pipe, encoding="utf-8", write_through=True)
     sys.argv = ["tethertest", *words]
     if limit is not None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     if step is None:
-        typed()
+        _type_it()
     else:
-        _die_at(step, typed)
+        _die_at(step, _type_it)
+
+
+def _type_it() -> None:
+    """Run ``python -m tethertest.cli`` within this process."""
+    runpy.run_module("tethertest.cli", run_name="__main__")
 
 
 def _die_at(step: int, work: Callable[[], object]) -> None:

@@ -107,7 +107,7 @@ def test_lost_samples_written_as_zero_are_left_out_however_many(tmp_path: Path, 
     assert found.find("F").channel.flag_counts() == {"spike": count}
 
 
-@pytest.mark.parametrize("rate", [30.0, 60.0, 144.0])
+@pytest.mark.parametrize("rate", [30.0, 60.0, 144.0, 400.0, 700.0])
 def test_stamps_in_milliseconds_do_not_shift_frequencies(tmp_path: Path, rate: float) -> None:
     time = np.arange(int(120.0 * rate)) / rate
     values = 50.0 + 10.0 * np.sin(2.0 * np.pi * time) + 2.0 * np.sin(2.0 * np.pi * 7.0 * time)

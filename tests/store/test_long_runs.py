@@ -128,6 +128,7 @@ STAMPS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "stood still": stood_still,
     "jitter": lambda time: time + np.random.default_rng(1).normal(0.0, 2e-4, time.size),
     "quantised": lambda time: np.floor(time / 0.0125) * 0.0125,
+    "cut to nearly a step": lambda time: np.delete(np.floor(time / 0.00137) * 0.00137, np.r_[3000:3100]),
     "jitter and gaps": lambda time: np.delete(
         time + np.random.default_rng(2).normal(0.0, 1e-4, time.size), np.r_[3000:3100]
     ),

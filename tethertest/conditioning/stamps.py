@@ -6,21 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tethertest.conditioning.stamp_steps import GAP_STEPS, Quantised, Steps, even_rows, steps_of
 from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray, FlagArray, FloatArray
 from tethertest.records.channel import Finding, Flag, RawLog
 
-#: steps below this fraction of the median step are a stamp that repeats
-DUPLICATE_FRACTION = 1e-3
 #: a step back by more than this fraction of the median step is an unsorted log, by less it is jitter
 BACKWARD_FRACTION = 0.5
-#: a step longer than this many median steps is a gap
-GAP_STEPS = 1.5
 #: steps that scatter by more than this fraction of the median step (standard deviation) are rebuilt
 JITTER_FRACTION = 0.02
-#: repeated stamps in more than this fraction of the rows come from a coarse stamp, not from a row written
-#: twice
-COARSE_FRACTION = 0.02
 #: rebuilt stamps may differ from written ones by this many median steps
 REBUILD_STEPS = 1.5
 #: and never reach across a step longer than this many median steps: rows may be missing there
@@ -36,42 +30,6 @@ class Stamps:
     flags: FlagArray  #: (n,)
     findings: tuple[Finding, ...]  #: spans on the log's own clock
     steps: tuple[str, ...]  #: for the record
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Steps:
-    """What the steps between stamps are like, before anything is mended."""
-
-    median: float  #: of the steps forward [s]; 0 where there is none
-    duplicate: BoolArray  #: (n,) True where a stamp repeats the one before it, or goes back
-    backward: BoolArray  #: (n,) True where time goes back
-    gap: BoolArray  #: (n,) True behind a step longer than `GAP_STEPS` median steps
-    jitter: float  #: standard deviation of the steps that are no gaps and no repeats [s]
-
-    @property
-    def coarse(self) -> bool:
-        """Whether so many stamps repeat that the clock is coarser than the rows."""
-        return int(np.count_nonzero(self.duplicate)) > COARSE_FRACTION * self.duplicate.size
-
-
-def steps_of(time: FloatArray) -> Steps:
-    """Sort the steps between stamps.
-
-    Parameters
-    ----------
-    time : ndarray
-        (n,) [s], finite, as logged.
-    """
-    step = np.diff(time)
-    median = float(np.median(step[step > 0])) if np.any(step > 0) else 0.0
-    ordinary = step[(step > (2.0 - GAP_STEPS) * median) & (step < GAP_STEPS * median)]
-    return Steps(
-        median,
-        np.concatenate(([False], step <= DUPLICATE_FRACTION * median)),
-        np.concatenate(([False], step < 0)),
-        np.concatenate(([False], step > GAP_STEPS * median)),
-        float(np.std(ordinary)) if ordinary.size else 0.0,
-    )
 
 
 def audited(time: FloatArray, raw: RawLog, clock: str) -> Stamps:
@@ -107,26 +65,23 @@ def audited(time: FloatArray, raw: RawLog, clock: str) -> Stamps:
         text = f"{raw.path.name}: {np.count_nonzero(missing)} rows have no stamp; interpolated by row"
         findings.append(Finding(clock, "missing_time", text, samples=int(np.count_nonzero(missing))))
     seen = steps_of(time)
-    median, duplicate, backward, jitter = seen.median, seen.duplicate, seen.backward, seen.jitter
+    median, duplicate, backward = seen.median, seen.duplicate, seen.backward
     _check_order(time, np.diff(time), median, raw)
     flags = np.where(missing, np.uint16(Flag.MISSING), np.uint16(0)).astype(np.uint16)
     flags[duplicate & ~backward] |= np.uint16(Flag.DUPLICATE_TIME)
     flags[backward] |= np.uint16(Flag.BACKWARD_TIME)
     rows = np.ones(time.size, dtype=bool)
     steps: list[str] = []
-    coarse = seen.coarse
-    if coarse or backward.any() or jitter > JITTER_FRACTION * median:
-        kind = "quantised_time" if coarse else "jitter"
-        words = f"steps of {1e3 * median:.4g} ms with repeats" if coarse else f"jitter {1e3 * jitter:.3g} ms"
-        rebuilt = _rebuilt(time, median)
+    if seen.coarse or seen.quantised or backward.any() or seen.jitter > JITTER_FRACTION * median:
+        kind, words = irregularity(seen.quantised, median, seen.jitter, coarse=seen.coarse)
+        rebuilt = _rebuilt(time, seen)
         if rebuilt is None:
             rebuilt = _spread(time)
             text = f"{words}, and rows are missing: stamps that repeat are spread evenly, true to {words}"
             severity = "warning"
         else:
             away = float(np.max(np.abs(rebuilt - time)))
-            text = f"{words}: time rebuilt from row numbers, at most {1e3 * away:.3g} ms from the stamps"
-            severity = "note"
+            text, severity = rebuilt_words(words, away, seen.quantised)
         findings.append(Finding(clock, kind, f"{raw.path.name}: {text}", severity))
         steps.append(text)
         time, duplicate = rebuilt, np.zeros_like(duplicate)
@@ -165,19 +120,53 @@ def _check_order(time: FloatArray, step: FloatArray, median: float, raw: RawLog)
         raise DataError(message, "export the log again, sorted by time", path=raw.path, line=line)
 
 
-def _rebuilt(time: FloatArray, median: float) -> FloatArray | None:
+def irregularity(
+    quantised: Quantised | None, median: float, jitter: float, *, coarse: bool
+) -> tuple[str, str]:
+    """Return the kind of finding that uneven steps are, and what they are in words.
+
+    Parameters
+    ----------
+    quantised, median, jitter, coarse
+        As in `Steps`.
+    """
+    if quantised is not None:
+        quantum, step = 1e3 * quantised.quantum, 1e3 * quantised.step
+        return "quantised_time", f"rows every {step:.4g} ms have stamps cut to {quantum:.4g} ms"
+    if coarse:
+        return "quantised_time", f"steps of {1e3 * median:.4g} ms with repeats"
+    return "jitter", f"jitter {1e3 * jitter:.3g} ms"
+
+
+def rebuilt_words(words: str, away: float, quantised: Quantised | None) -> tuple[str, str]:
+    """Return what is said of rebuilt time, and how severe it is.
+
+    Parameters
+    ----------
+    words : str
+        What the stamps are like.
+    away : float
+        Farthest rebuilt from written [s].
+    quantised : Quantised or None
+    """
+    text = f"{words}: time rebuilt from row numbers, at most {1e3 * away:.3g} ms from the stamps"
+    if quantised is None or not quantised.every:
+        return text, "note"
+    same = f"rows every {1e3 * quantised.shortest:.4g} ms, one missing after every {quantised.every},"
+    return f"{text}; {same} look the same: export the log with finer stamps to tell", "warning"
+
+
+def rebuild_gap(median: float, quantised: Quantised | None) -> float:
+    """Return the longest step between stamps that rebuilt time reaches across [s]."""
+    return REBUILD_GAP_STEPS * median if quantised is None else quantised.longest
+
+
+def _rebuilt(time: FloatArray, seen: Steps) -> FloatArray | None:
     """Return uniform time through the stamps between gaps, or None where that strays too far."""
-    step = np.diff(time)
-    stretch = np.concatenate(([0], np.cumsum(step > REBUILD_GAP_STEPS * median)))
-    row = np.arange(time.size, dtype=float)
-    count = np.bincount(stretch)
-    row_mean = (np.bincount(stretch, row) / count)[stretch]
-    time_mean = (np.bincount(stretch, time) / count)[stretch]
-    slope = float(np.sum((row - row_mean) * (time - time_mean)) / np.sum((row - row_mean) ** 2))
-    rebuilt = time_mean + slope * (row - row_mean)
-    if slope <= 0 or np.max(np.abs(rebuilt - time)) > REBUILD_STEPS * median or np.any(np.diff(rebuilt) <= 0):
+    slope, even = even_rows(time, rebuild_gap(seen.median, seen.quantised))
+    if slope <= 0 or np.max(np.abs(even - time)) > REBUILD_STEPS * seen.median or np.any(np.diff(even) <= 0):
         return None
-    return np.asarray(rebuilt, dtype=np.float64)
+    return even
 
 
 def _spread(time: FloatArray) -> FloatArray:

@@ -9,6 +9,8 @@ from typing import Final
 
 import numpy as np
 
+from tethertest.conditioning.stamp_steps import even_rows, quantised_steps
+from tethertest.conditioning.stamps import irregularity
 from tethertest.errors import DataError, QuantityError
 from tethertest.pipeline.read_bare import read_bare
 from tethertest.pipeline.shown_flags import SHOWN, with_shown_flags, without_codes
@@ -176,8 +178,13 @@ def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
         remarks.append(f"channel {raw.name!r}: {text}; the empty rows are no holes")
         kept = kept[slower]
     time = raw.time[kept]
+    quantised = quantised_steps(time)
     steps = np.diff(time)
-    if steps.size > 1:
+    if quantised is not None:
+        _, time = even_rows(time, quantised.longest)
+        _, words = irregularity(quantised, 0.0, 0.0, coarse=False)
+        remarks.append(f"channel {raw.name!r}: {words}: its time is rebuilt from the rows")
+    elif steps.size > 1:
         low, usual, high = np.quantile(steps, (0.1, 0.5, 0.9))
         if high - low > JITTER * usual:
             text = f"its samples are {low:.4g} to {high:.4g} s apart; spectra take them as {usual:.4g} s"

@@ -120,10 +120,12 @@ def described(log: RawLog, settings: Mapping[str, Any] | None = None) -> dict[st
     found = describe(log)
     bases = time_bases(log)
     shown, remarks = shown_flags(log)
-    of_time = {name: base["flags"] for base in bases for name in base["channels"]}
+    of_channel = {name: base for base in bases for name in base["channels"]}
     for channel in found["channels"]:
-        name = channel["name"]
-        channel["flags"] = {**channel["flags"], **of_time[name], **shown.get(name, {})}
+        name, base = channel["name"], of_channel[channel["name"]]
+        channel["flags"] = {**channel["flags"], **base["flags"], **shown.get(name, {})}
+        if base["quantum"] is not None:
+            channel["rate"] = 1.0 / base["step"]
     return {
         **found,
         "refused": False,

@@ -37,6 +37,7 @@ class TimeBase(_Closed):
     first: float | None
     last: float | None
     step: float | None
+    quantum: float | None
     shortest_step: float | None = None
     longest_step: float | None = None
     mean_rate: float | None = None

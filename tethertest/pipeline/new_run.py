@@ -10,12 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
+from tethertest.conditioning.stamp_steps import steps_of
 from tethertest.errors import TethertestError
 from tethertest.pipeline.draft_text import TODO, draft_text
 from tethertest.pipeline.sensor_names import Matched, matched
 from tethertest.readers import identify, load_rig, read_log
 from tethertest.readers.config.load import RIGS_FOLDER, RUN_FILE
-from tethertest.records.channel import RawLog
+from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.rig import Rig
 from tethertest.signal.filters import low_passed
 from tethertest.units import channel_scale
@@ -203,8 +204,7 @@ def _best_rig(candidates: dict[str, Rig], logs: dict[str, RawLog]) -> tuple[str,
 
 def _clock(log: RawLog, rig: Rig | None) -> tuple[str, str]:
     """Return the instrument whose rate is nearest to the log's, and the words for it."""
-    steps = [np.diff(channel.time) for channel in log.channels if channel.time.size > 1]
-    usual = float(np.median(steps[0])) if steps else 0.0
+    usual = next((_step(channel) for channel in log.channels if channel.time.size > 1), 0.0)
     if rig is None or usual <= 0.0 or not rig.instrument:
         return TODO, "no rig or no rate to guess from"
     rate = 1.0 / usual
@@ -247,6 +247,11 @@ def _date(logs: dict[str, RawLog]) -> tuple[str, str]:
     return first.isoformat(), "TODO: add the laboratory's zone, e.g. +08:00; the earliest stamp has none"
 
 
+def _step(channel: RawChannel) -> float:
+    """Return the usual step between rows [s], 0 where no stamp goes forward."""
+    return steps_of(channel.time[np.isfinite(channel.time)]).step
+
+
 def _drive(logs: dict[str, RawLog]) -> str:
     """Return what the displacement shows of the drive, in words; empty where nothing does."""
     for log in logs.values():
@@ -255,15 +260,15 @@ def _drive(logs: dict[str, RawLog]) -> str:
                 scale = channel_scale(channel.unit)
             except TethertestError:
                 continue
-            if scale.kind != "displacement" or channel.time.size < 100:
+            step = _step(channel)
+            if scale.kind != "displacement" or channel.time.size < 100 or step <= 0.0:
                 continue
             values = scale.factor * channel.values
             values = np.where(np.isfinite(values), values, np.nanmedian(values))
-            rate = 1.0 / float(np.median(np.diff(channel.time)))
             low, high = np.quantile(values, [0.01, 0.99])
-            smooth = low_passed(values - values.mean(), rate, 20.0)
+            smooth = low_passed(values - values.mean(), 1.0 / step, 20.0)
             power = np.abs(np.fft.rfft(smooth * np.hanning(values.size)))
-            frequency = np.fft.rfftfreq(values.size, 1.0 / rate)
+            frequency = np.fft.rfftfreq(values.size, step)
             power[frequency < SLOWEST] = 0.0
             peak = int(np.argmax(power))
             near = np.abs(frequency - frequency[peak]) <= 0.1 * frequency[peak]

@@ -7,7 +7,8 @@ from typing import Any, Final
 import numpy as np
 
 from tethertest.conditioning.logged import with_same_times
-from tethertest.conditioning.stamps import JITTER_FRACTION, Steps, steps_of
+from tethertest.conditioning.stamp_steps import Steps, steps_of
+from tethertest.conditioning.stamps import JITTER_FRACTION
 from tethertest.pipeline.bare_log import JITTER
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import RawLog
@@ -46,7 +47,7 @@ def _base(names: list[str], stamps: FloatArray) -> dict[str, Any]:
         found |= {"first": float(time.min()), "last": float(time.max())}
     if time.size < 2:
         flags = {"missing_time": missing, "duplicate_time": 0, "backward_time": 0, "gap": 0}
-        return {**found, "step": None, "uneven": 0, "flags": flags, "text": _few(time.size)}
+        return {**found, "step": None, "quantum": None, "uneven": 0, "flags": flags, "text": _few(time.size)}
     seen = steps_of(time)
     # a row in the wrong place is no hole in the record
     ordered = np.unique(time) if seen.backward.any() else time
@@ -55,7 +56,8 @@ def _base(names: list[str], stamps: FloatArray) -> dict[str, Any]:
     repeats = seen.duplicate & ~seen.backward
     return {
         **found,
-        "step": seen.median or None,
+        "step": seen.step or None,
+        "quantum": None if seen.quantised is None else seen.quantised.quantum,
         "shortest_step": float(step.min()),
         "longest_step": float(step.max()),
         "mean_rate": (time.size - 1) / float(time.max() - time.min()) if time.max() > time.min() else None,
@@ -88,8 +90,10 @@ def _sentence(
     step = np.diff(ordered)
     uneven = _uneven(step, seen.median)
     count, share = int(np.count_nonzero(uneven)), float(np.mean(uneven))
-    said = [f"{time.size} stamps from {ordered[0]:.6g} to {ordered[-1]:.6g} s, every {_seconds(seen.median)}"]
-    if share > HABIT:
+    said = [f"{time.size} stamps from {ordered[0]:.6g} to {ordered[-1]:.6g} s, every {_seconds(seen.step)}"]
+    if seen.quantised is not None:
+        said.append(f"stamps cut to {_seconds(seen.quantised.quantum)}")
+    elif share > HABIT:
         rate = (time.size - 1) / float(time.max() - time.min())
         off = step[uneven]
         words = f"jittered: {count} of {step.size} steps ({100 * share:.3g} %) are not that, but "

@@ -45,6 +45,40 @@ def test_coarse_stamps_are_rebuilt_from_rows():
     assert np.max(np.abs(stamps.time - true)) < 0.0125
 
 
+@pytest.mark.parametrize("rate", [34.7, 38.0, 47.3, 57.97, 61.2, 64.0, 71.0, 78.9])
+@pytest.mark.parametrize("decimals", [12, 3])
+def test_stamps_cut_to_nearly_a_step_are_no_gaps(rate, decimals):
+    """Rows every 17.3 ms with stamps of 12.5 ms: 12.5 ms or 25 ms apart, once taken for 80 Hz with losses."""
+    true = np.delete(np.arange(3000) / rate, slice(1200, 1300))
+    stamps = audited(np.round(np.floor(true / 0.0125) * 0.0125, decimals), log(), "interrogator")
+    assert [item.kind for item in stamps.findings] == ["quantised_time"]
+    assert "cut to 12.5 ms" in stamps.findings[0].text
+    off = stamps.time - true
+    assert np.ptp(off) < 1.5e-3
+    assert abs(np.mean(off) + 0.00625) < 2e-3
+    assert np.flatnonzero(stamps.flags).tolist() == [1200]
+
+
+def test_every_fifth_row_missing_looks_like_stamps_that_are_cut_and_both_are_said():
+    time = np.arange(2000) * 0.0125
+    stamps = audited(time[np.arange(2000) % 5 != 4], log(), "interrogator")
+    assert [(item.kind, item.severity) for item in stamps.findings] == [("quantised_time", "warning")]
+    assert "rows every 12.5 ms, one missing after every 4, look the same" in stamps.findings[0].text
+
+
+@pytest.mark.parametrize("share", [0.02, 0.1, 0.3, 0.5])
+@pytest.mark.parametrize("seed", range(20))
+def test_rows_lost_by_chance_are_gaps(share, seed):
+    random = np.random.default_rng([seed, round(100 * share)])
+    time = np.arange(3000) * 0.0125
+    kept = random.random(3000) >= share
+    stamps = audited(time[kept], log(), "interrogator")
+    np.testing.assert_array_equal(stamps.time, time[kept])
+    if share < 0.5:  # else neighbours are no longer the usual case
+        gaps = np.flatnonzero(np.diff(time[kept]) > 0.02) + 1
+        assert np.flatnonzero(stamps.flags & np.uint16(Flag.GAP)).tolist() == gaps.tolist()
+
+
 def test_jitter_is_rebuilt_on_both_sides_of_a_gap():
     random = np.random.default_rng(4)
     true = np.delete(np.arange(2000) * 0.01, slice(900, 950))

@@ -9,14 +9,20 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tethertest.conditioning.stamps import (
-    BACKWARD_FRACTION,
+from tethertest.conditioning.stamp_steps import (
     COARSE_FRACTION,
     DUPLICATE_FRACTION,
     GAP_STEPS,
+    Quantised,
+    quantised_steps,
+)
+from tethertest.conditioning.stamps import (
+    BACKWARD_FRACTION,
     JITTER_FRACTION,
-    REBUILD_GAP_STEPS,
     REBUILD_STEPS,
+    irregularity,
+    rebuild_gap,
+    rebuilt_words,
 )
 from tethertest.errors import DataError
 from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes, blocks
@@ -75,13 +81,13 @@ def audited(log: Gathered, scratch: Scratch, sizes: Sizes) -> Audited:
     deviation = max(seen.square / max(seen.ordinary, 1) - (seen.total / max(seen.ordinary, 1)) ** 2, 0.0)
     jitter = float(np.sqrt(deviation))
     coarse = seen.duplicates > COARSE_FRACTION * log.rows
+    quantised = quantised_steps(log.time.read(0, min(log.rows, sizes.whole)))
     columns = (scratch.column("<f8"), scratch.column("<u2"), scratch.column("?"))
-    if coarse or seen.backward or jitter > JITTER_FRACTION * median:
-        kind = "quantised_time" if coarse else "jitter"
-        words = f"steps of {1e3 * median:.4g} ms with repeats" if coarse else f"jitter {1e3 * jitter:.3g} ms"
-        away, step = _rebuild(log, median, columns, sizes)
-        text = f"{words}: time rebuilt from row numbers, at most {1e3 * away:.3g} ms from the stamps"
-        finding = Finding(log.entry.clock, kind, f"{log.raw.path.name}: {text}", "note")
+    if coarse or quantised or seen.backward or jitter > JITTER_FRACTION * median:
+        kind, words = irregularity(quantised, median, jitter, coarse=coarse)
+        away, step = _rebuild(log, median, quantised, columns, sizes)
+        text, severity = rebuilt_words(words, away, quantised)
+        finding = Finding(log.entry.clock, kind, f"{log.raw.path.name}: {text}", severity)
         return Audited(*columns, step, (finding,), (text,))
     spans, stood, dropped = _plain(log, median, columns, sizes)
     if not spans:
@@ -172,19 +178,24 @@ def _plain(
 
 
 def _rebuild(
-    log: Gathered, median: float, columns: tuple[Column, Column, Column], sizes: Sizes
+    log: Gathered,
+    median: float,
+    quantised: Quantised | None,
+    columns: tuple[Column, Column, Column],
+    sizes: Sizes,
 ) -> tuple[float, float]:
     """Put rows between gaps on a straight line of one slope; return the largest change, and the step."""
-    count, row_sum, time_sum = _sums(log, median, sizes)
+    longest = rebuild_gap(median, quantised)
+    count, row_sum, time_sum = _sums(log, longest, sizes)
     row_mean, time_mean = row_sum / count, time_sum / count
     product = square = 0.0
-    for stretch, row, time, _ in _stretches(log, median, sizes):
+    for stretch, row, time, _ in _stretches(log, longest, sizes):
         off = row - row_mean[stretch]
         product += float(np.sum(off * (time - time_mean[stretch])))
         square += float(np.sum(off**2))
     slope = product / square
     away, before = 0.0, -np.inf
-    for stretch, row, time, step in _stretches(log, median, sizes):
+    for stretch, row, time, step in _stretches(log, longest, sizes):
         rebuilt = time_mean[stretch] + slope * (row - row_mean[stretch])
         away = max(away, float(np.max(np.abs(rebuilt - time))))
         forward = np.diff(rebuilt, prepend=before)
@@ -211,14 +222,14 @@ def _append(columns: tuple[Column, Column, Column], *parts: npt.NDArray[Any]) ->
 
 
 def _stretches(
-    log: Gathered, median: float, sizes: Sizes
+    log: Gathered, longest: float, sizes: Sizes
 ) -> Iterator[tuple[npt.NDArray[np.int64], FloatArray, FloatArray, FloatArray]]:
     """Yield the number of the stretch, row, stamp and step of each row, block by block."""
     number = 0
     for start, stop in blocks(log.rows, sizes.block):
         time = log.time.read(start - 1, stop) + log.start
         step = np.diff(time) if start else np.concatenate(([np.inf], np.diff(time)))
-        gaps = step > REBUILD_GAP_STEPS * median
+        gaps = step > longest
         if not start:
             gaps[0] = False
         stretch = number + np.cumsum(gaps)
@@ -227,9 +238,9 @@ def _stretches(
         yield stretch, row, time[-row.size :], step
 
 
-def _sums(log: Gathered, median: float, sizes: Sizes) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _sums(log: Gathered, longest: float, sizes: Sizes) -> tuple[FloatArray, FloatArray, FloatArray]:
     sums = np.zeros((3, 1))
-    for stretch, row, time, _ in _stretches(log, median, sizes):
+    for stretch, row, time, _ in _stretches(log, longest, sizes):
         short = int(stretch[-1]) + 1
         if short > sums.shape[1]:
             sums = np.pad(sums, ((0, 0), (0, short - sums.shape[1])))

@@ -15,6 +15,7 @@ from tethertest.conditioning.bar import (
     standard_uncertainties,
     tension_changes,
 )
+from tethertest.conditioning.folding import without_folding
 from tethertest.conditioning.guide import Guide
 from tethertest.conditioning.signals import (
     MOTION_STEP,
@@ -42,6 +43,9 @@ STRAIN_SYSTEMATIC = 2e-5
 #: timing error of each span by itself [s]: of strain what its bounce and its drive differ by, of an expected
 #: tap what the mode of the UAV's loop and the ringing before it make of it
 STRAIN_SPAN, TAP_SPAN = 1e-5, 1e-4
+#: and of strain that has nothing but knocks, where an instrument is too slow to follow them, as a share of
+#: its sampling interval: what it folds is not the same at either end
+FOLDED_KNOCK = 0.04
 #: the changes by what the rig does not know are computed on every so many samples of the motion
 THINNED = 2
 
@@ -100,6 +104,12 @@ def _by_strain(
     if isinstance(pair, str):
         return pair
     slowest = _slowest(drive)
+    sampled = min(pair.reference.sampled, pair.clock.sampled)
+    own = STRAIN_SPAN
+    if drive is not None:
+        pair = without_folding(pair)
+    elif sampled < TAP_RATE:
+        own = FOLDED_KNOCK / sampled
     lag = run.rig.cable.axial_damping_time or 0.0
     error = run.rig.uncertainty.get("cable.axial_damping_time", UNSTATED_DAMPING_TIME)
     return Comparable(
@@ -109,7 +119,7 @@ def _by_strain(
         drive or 0.0,
         lag,
         float(np.hypot(error, STRAIN_SYSTEMATIC)),
-        STRAIN_SPAN,
+        own,
         "strain of the gratings against tension",
     )
 
@@ -129,7 +139,7 @@ def _by_motion(
     expected = expected_tension(height)
     changes = _changes(height, run)
     at_rest = (rest.before is not None, rest.after is not None)
-    pair = expected_pair(expected, height, bottom, guide.mains, changes, at_rest=at_rest)
+    pair = expected_pair(expected, height, heave.rate, bottom, guide.mains, changes, at_rest=at_rest)
     if pair is None:
         yield "holes leave no stretch of the bottom displacement long enough for the rig to settle"
         return
@@ -140,6 +150,7 @@ def _by_motion(
         yield Comparable(tap_pair(pair), taps, 0.0, TAP_HIGH_PASS, 0.0, 0.0, TAP_SPAN, method)
     if not taps or drive is not None:
         method = "tension expected from the bottom's motion against bottom tension, start to stop"
+        pair = pair if drive is None else without_folding(pair)
         remark = "no marker tap: the drive's own phase enters, so the phases compared are not independent"
         yield Comparable(
             pair, _cut(pair.clock.time), _slowest(drive), drive or 0.0, 0.0, 0.0, 0.0, method, (remark,)

@@ -88,6 +88,7 @@ def handed_over(heave: Channel) -> Channel:
 def expected_pair(
     expected: Channel,
     heave: Channel,
+    sampled: float,
     bottom: Channel,
     mains: float,
     changes: tuple[FloatArray, ...],
@@ -102,6 +103,8 @@ def expected_pair(
         Bottom tension [N] that the displacement asks for, on its clock, at any times.
     heave : Channel
         The displacement as `handed_over`, for its unusable samples.
+    sampled : float
+        Rate at which the displacement was logged [Hz].
     bottom : Channel
         Measured bottom tension [N] on the reference clock.
     mains : float
@@ -123,7 +126,7 @@ def expected_pair(
     known &= (expected.time >= first) & (expected.time <= last)
     if not known.any() or not bottom.usable.any():
         return None
-    answer = uniform(expected.with_flags(~known, Flag.MISSING))
+    answer = replace(uniform(expected.with_flags(~known, Flag.MISSING)), sampled=sampled)
     moved = tuple(_like(answer, heave, change) for change in changes)
     return Pair(uniform(bottom, mains), answer, moved)
 

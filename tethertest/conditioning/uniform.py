@@ -97,17 +97,18 @@ def uniform(channel: Channel, mains: float | None = None, top: float = LOW_PASS)
 
 
 def worn(usable: BoolArray, rate: float, cutoff: float) -> BoolArray:
-    """Return the mask without the samples that a low-pass has mixed with bad ones."""
+    """Return the mask without the samples that a low-pass has mixed with bad ones or bent at the ends."""
     edges = np.flatnonzero(np.diff(np.concatenate(([True], usable, [True])).astype(np.int8)))
-    if not edges.size:
-        return usable
     first, last = edges[::2], edges[1::2]
-    # a single bad sample is bridged well, a hole is not
-    reach = np.minimum(round(FILTER_REACH * rate / cutoff) + 1, 3 * (last - first))
+    # a single bad sample is bridged well, a hole is not, and nothing is known beyond the ends
+    far = round(FILTER_REACH * rate / cutoff) + 1
+    reach = np.minimum(far, 3 * (last - first))
     change = np.zeros(usable.size + 1, dtype=np.int64)
     np.add.at(change, np.maximum(first - reach, 0), 1)
     np.add.at(change, np.minimum(last + reach, usable.size), -1)
-    return np.asarray(np.cumsum(change[:-1]) == 0, dtype=bool)
+    kept = np.cumsum(change[:-1]) == 0
+    kept[:far] = kept[max(kept.size - far, 0) :] = False
+    return np.asarray(kept, dtype=bool)
 
 
 def _regular(channel: Channel) -> tuple[FloatArray, BoolArray, float, float]:

@@ -10,6 +10,7 @@ import pytest
 from tethertest.studies.clock_errors.bound import Bound, Waveform, bound
 from tethertest.studies.clock_errors.judge import Judged, judged
 from tethertest.studies.clock_errors.random_runs import random_run
+from tethertest.studies.clock_errors.rig import KNOWN_RIG
 from tethertest.studies.clock_errors.table import clock_table, demands
 
 TIME = np.arange(0.0, 100.0, 4e-3)
@@ -53,13 +54,31 @@ def test_a_run_is_judged_by_its_own_offset():
     assert found.bound.offset <= found.bound.offset_with_rig
 
 
+def test_a_known_rig_adds_nothing_to_the_bound():
+    for number in (0, 1):  # a strain and a motion
+        run = random_run(number, KNOWN_RIG)
+        assert run.bound.offset_with_rig == pytest.approx(run.bound.offset, rel=1e-9)
+        assert run.bound.drift_with_rig == pytest.approx(run.bound.drift, rel=1e-9)
+
+
+def test_coverage_may_be_short_by_chance_and_no_more():
+    """Of 100 intervals of 95 %, 91 to 99 hold the true value in 19 of 20 samples."""
+    run = Judged(
+        0, "strain", "start", "exact", 0, 100.0, 1.0, (100.0, 100.0), "fitted", (), 1e-4, 1e-4, 0.0, 1e-6,
+        Bound(1e-4, 1e-6, 1e-4, 1e-6, 50.0),
+    )  # fmt: skip
+    off = replace(run, offset_error=3e-4)
+    assert demands([run] * 91 + [off] * 9)[0].met
+    assert not demands([run] * 90 + [off] * 10)[0].met
+
+
 def test_the_table_tells_a_missed_demand():
     run = Judged(
         0, "strain", "start", "exact", 0, 100.0, 1.0, (100.0, 100.0), "fitted", (), 1e-4, 1e-4, 0.0, 1e-6,
         Bound(1e-4, 1e-6, 1e-4, 1e-6, 50.0),
     )  # fmt: skip
     assert all(demand.met for demand in demands([run]))
-    assert "| 1.00 |" in clock_table([run])
+    assert "| 1.00 |" in clock_table({"a rig": [run]}, "a command")
     wrong = replace(run, outcome="wrong cycle", offset_error=1.0)
     missed = [demand.text for demand in demands([run, wrong]) if not demand.met]
     assert "wrong cycles accepted" in missed

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tethertest.conditioning.clocks import fitted_clock
+from tethertest.records.rig import Rig
 from tethertest.studies.clock_errors.bound import Bound
 from tethertest.studies.clock_errors.random_runs import SyntheticRun, random_run
+from tethertest.studies.clock_errors.rig import RIG
 
 #: an interval of 95 % reaches this many standard errors
 COVERAGE_95 = 1.959964
@@ -55,9 +57,9 @@ class Judged:
         return self.transients in ("start and stop", "start", "stop", "taps")
 
 
-def judged(number: int) -> Judged:
+def judged(number: int, rig: Rig = RIG) -> Judged:
     """Align the run of a number and compare."""
-    run = random_run(number)
+    run = random_run(number, rig)
     fit, findings = fitted_clock(run.clock, run.channels, run.reference, run.run, run.guide)
     fatal = tuple(f"{item.kind}: {item.text}" for item in findings if item.severity == "fatal")
     error = fit.offset - run.offset

@@ -14,6 +14,7 @@ from tethertest.conditioning.bar import standard_uncertainties, tension_changes
 from tethertest.conditioning.guide import Guide
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel
+from tethertest.records.rig import Rig
 from tethertest.records.run import Drive, Log, Run, RunFile, RunPlatform
 from tethertest.studies.clock_errors.bound import Bound, Waveform, bound
 from tethertest.studies.clock_errors.motion import SHARES, TAP_LENGTH, Transients, drawn_motion
@@ -76,8 +77,15 @@ class SyntheticRun:
     bound: Bound
 
 
-def random_run(number: int) -> SyntheticRun:
-    """Return the run of a number; the same number is the same run."""
+def random_run(number: int, rig: Rig = RIG) -> SyntheticRun:
+    """Return the run of a number; the same number is the same run.
+
+    Parameters
+    ----------
+    number : int
+    rig : Rig
+        `RIG`, from which the true rig differs by as much as it states, or `KNOWN_RIG`.
+    """
     random = np.random.default_rng([SEED, number])
     kind: Kind = "strain" if random.random() < STRAIN_SHARE else "motion"
     transients: Transients = random.choice(np.array(list(SHARES)), p=list(SHARES.values())).item()
@@ -96,7 +104,7 @@ def random_run(number: int) -> SyntheticRun:
     lead = np.arange(-LEAD, length + 1.0, STEP)
     run_in = lead.size - np.count_nonzero(lead >= -1.0)
     time, height = lead[run_in:], motion(lead)
-    bar = drawn_bar(random, mode)
+    bar = drawn_bar(random, mode, rig)
     size = np.exp(random.uniform(-np.log(SPREAD), np.log(SPREAD), 2))
     drift = random.uniform(-BELIEVABLE_DRIFT, BELIEVABLE_DRIFT)
     offset = random.uniform(-5.0, 5.0)
@@ -115,7 +123,7 @@ def random_run(number: int) -> SyntheticRun:
         )
         noise = bar.axial_stiffness / GAUGE_FACTOR / WAVELENGTH * GRATING_NOISE * size[1]
         noises = (CELL_NOISE * size[0] / np.sqrt(2.0), noise / np.sqrt(len(PLACES)))
-        lag = RIG.uncertainty["cable.axial_damping_time"]
+        lag = rig.uncertainty["cable.axial_damping_time"]
         wave = Waveform(time[thin], 0.5 * (bottom + top)[thin], noises, rates, None, (), lag)
     else:
         encoder = samplings[1]
@@ -124,14 +132,14 @@ def random_run(number: int) -> SyntheticRun:
         channels = (encoder.channel("heave", "displacement", "m", heave, 0.0),)
         noises = (CELL_NOISE * size[0], ENCODER_NOISE * size[1])
         stated = stated_bar(mode)
-        uncertain = standard_uncertainties(RIG, mode, stated)
+        uncertain = standard_uncertainties(rig, mode, stated)
         changes = tension_changes(stated, uncertain, height[thin], BOUND_EVERY * STEP)
         wave = Waveform(time[thin], bottom[thin], noises, rates, bar, changes, 0.0)
     true_offset, true_drift = between(samplings[0], samplings[1])
     only = tuple((when - 0.1, when + TAP_LENGTH + 0.2) for when, _ in motion.taps) if kind == "motion" else ()
     return SyntheticRun(
         number, kind, transients, stamps, sum(item.gaps for item in samplings), length, frequency, rates,
-        clock, channels, reference, _run(clock, frequency, motion.radius, mode, transients),
+        clock, channels, reference, _run(clock, frequency, motion.radius, mode, transients, rig),
         Guide({}, Expected(mode), drive_frequency=None if transients == "knocks alone" else frequency),
         true_offset, true_drift,
         bound(wave, samplings[0].seen, samplings[1].seen, only, BELIEVABLE_DRIFT / np.sqrt(3.0)),
@@ -177,8 +185,8 @@ def _gratings(
     return tuple(gratings)
 
 
-def _run(clock: str, frequency: float, radius: float, mode: str, transients: Transients) -> Run:
+def _run(clock: str, frequency: float, radius: float, mode: str, transients: Transients, rig: Rig) -> Run:
     drive = Drive("none") if transients == "knocks alone" else Drive("crank-slider", frequency, radius)
     logs = (Log("tension.lvm", "daq"), Log("other.txt", clock))
     file = RunFile("study", "study", DATE, drive, logs, RunPlatform(mode))
-    return Run(Path("study"), file, RIG, Path("study.toml"))
+    return Run(Path("study"), file, rig, Path("study.toml"))

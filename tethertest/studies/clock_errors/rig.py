@@ -54,6 +54,10 @@ RIG = Rig(
 )
 
 
+#: the same rig, known for certain
+KNOWN_RIG = replace(RIG, uncertainty=dict.fromkeys(RIG.uncertainty, 0.0))
+
+
 def stated_bar(mode: str) -> Bar:
     """Return the rig as its file states it."""
     bar = Bar.of(RIG, mode)
@@ -63,12 +67,12 @@ def stated_bar(mode: str) -> Bar:
     return bar
 
 
-def drawn_bar(random: np.random.Generator, mode: str) -> Bar:
+def drawn_bar(random: np.random.Generator, mode: str, rig: Rig) -> Bar:
     """Return the true rig: every parameter off by its stated standard uncertainty times a normal draw."""
     bar = stated_bar(mode)
     changes = {
         name: max(getattr(bar, name) + sigma * random.standard_normal(), 0.0)
-        for name, sigma in standard_uncertainties(RIG, mode, bar).items()
+        for name, sigma in standard_uncertainties(rig, mode, bar).items()
     }
     return replace(bar, **changes)
 

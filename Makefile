@@ -21,11 +21,11 @@ report: setup  ## the main job on one run: reports/<run>/report.html
 test: setup  ## the tests
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "not browser and not verify"
 
-# the clocks come first: their tests share 300 runs, which a process that got only some of them would judge again
-LOGS := tests/verification/test_clock_errors.py tests/fuzz tests/hostile tests/readers tests/store \
+# the longest come first: what is left is shared out as it comes
+LOGS := tests/verification/test_clock_errors.py tests/store tests/fuzz tests/hostile tests/readers \
 	tests/unit/conditioning tests/verification/test_flag_rates.py
 LINES := tests/unit/spectra tests/pipeline tests/verification/test_line_calibration.py tests/verification/test_wave_energy.py
-VERIFY := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m verify
+VERIFY := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m verify
 
 verify: verify-logs verify-lines verify-rest  ## the long batteries, and the campaign against its truth
 

@@ -25,6 +25,9 @@ _STRAY = 0.01
 #: each of the two is seen this often at least, and the stamps stay this many quanta from even time: half of
 #: one is their own, and that twelve rows lost by chance lie so evenly is one in 1e4
 _FEWEST, _FROM_EVEN = 12, 0.65
+#: stamps that are cut repeat themselves after few rows where their quantum and the rows' step have a common
+#: one: 10 ms and 60 Hz after three
+_PATTERN = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +40,8 @@ class Quantised:
 
     quantum: float  #: [s]
     step: float  #: the rows' own [s]
-    shortest: float  #: between two stamps of neighbouring rows [s]
-    longest: float  #: no more than this [s]
-    every: int  #: rows from one longer step to the next where that is always the same, else 0
+    longest: float  #: between two stamps of neighbouring rows at most [s]
+    pattern: int  #: rows after which the steps repeat themselves exactly, 0 where they do not
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,7 +101,7 @@ def quantised_steps(time: FloatArray) -> Quantised | None:
     -----
     Rows lost by chance from an exact clock leave single and double steps too, but their stamps wander from
     even time as the root of the losses; stamps that are cut stay within half a quantum of it however long the
-    record is. A row lost at every n-th place looks the same as both.
+    record is. Rows lost in a pattern that repeats itself look the same as both.
     """
     step = np.diff(time)
     forward = step[step > 0]
@@ -124,11 +126,21 @@ def _evenly_cut(time: FloatArray, step: FloatArray, quantum: float, fewer: int) 
     period, even = even_rows(time, longest)
     if float(np.max(np.abs(even - time))) > _FROM_EVEN * quantum:
         return None
-    apart = np.diff(np.flatnonzero(long))
-    every = int(apart[0]) if np.all(apart == apart[0]) else 0
     quanta = fewer * np.count_nonzero(short) + (fewer + 1) * np.count_nonzero(long)
     exact = float(np.sum(step[short | long])) / int(quanta)
-    return Quantised(exact, period, float(np.mean(step[short])), longest, every)
+    return Quantised(exact, period, longest, _pattern(short, long))
+
+
+def _pattern(short: BoolArray, long: BoolArray) -> int:
+    """Return after how many steps they repeat themselves all along, 0 if they do not within `_PATTERN`."""
+    stray = ~(short | long)
+    for rows in range(1, _PATTERN + 1):
+        same = long[rows:] == long[:-rows]
+        # behind a gap the pattern may begin anywhere
+        across = np.convolve(stray, np.ones(rows + 1))[rows:-rows] > 0
+        if np.all(same | across):
+            return rows
+    return 0
 
 
 def even_rows(time: FloatArray, longest: float) -> tuple[float, FloatArray]:

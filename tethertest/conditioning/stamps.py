@@ -150,10 +150,15 @@ def rebuilt_words(words: str, away: float, quantised: Quantised | None) -> tuple
     quantised : Quantised or None
     """
     text = f"{words}: time rebuilt from row numbers, at most {1e3 * away:.3g} ms from the stamps"
-    if quantised is None or not quantised.every:
+    if quantised is None or not quantised.pattern:
         return text, "note"
-    same = f"rows every {1e3 * quantised.shortest:.4g} ms, one missing after every {quantised.every},"
-    return f"{text}; {same} look the same: export the log with finer stamps to tell", "warning"
+    return f"{text}; {look_the_same(quantised)}: export the log with finer stamps to tell", "warning"
+
+
+def look_the_same(quantised: Quantised) -> str:
+    """Return what else stamps may be that repeat themselves in a pattern, in words."""
+    rows = f"rows every {1e3 * quantised.quantum:.4g} ms"
+    return f"{rows}, some missing in a pattern of {quantised.pattern}, look the same"
 
 
 def rebuild_gap(median: float, quantised: Quantised | None) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tethertest.conditioning.logged import with_same_times
 from tethertest.conditioning.stamp_steps import Steps, steps_of
-from tethertest.conditioning.stamps import JITTER_FRACTION
+from tethertest.conditioning.stamps import JITTER_FRACTION, look_the_same
 from tethertest.pipeline.bare_log import JITTER
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import RawLog
@@ -93,6 +93,8 @@ def _sentence(
     said = [f"{time.size} stamps from {ordered[0]:.6g} to {ordered[-1]:.6g} s, every {_seconds(seen.step)}"]
     if seen.quantised is not None:
         said.append(f"stamps cut to {_seconds(seen.quantised.quantum)}")
+        if seen.quantised.pattern:
+            said[-1] += f" ({look_the_same(seen.quantised)})"
     elif share > HABIT:
         rate = (time.size - 1) / float(time.max() - time.min())
         off = step[uneven]

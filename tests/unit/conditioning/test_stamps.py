@@ -63,7 +63,16 @@ def test_every_fifth_row_missing_looks_like_stamps_that_are_cut_and_both_are_sai
     time = np.arange(2000) * 0.0125
     stamps = audited(time[np.arange(2000) % 5 != 4], log(), "interrogator")
     assert [(item.kind, item.severity) for item in stamps.findings] == [("quantised_time", "warning")]
-    assert "rows every 12.5 ms, one missing after every 4, look the same" in stamps.findings[0].text
+    assert "rows every 12.5 ms, some missing in a pattern of 4, look the same" in stamps.findings[0].text
+
+
+def test_a_pattern_of_stamps_goes_on_behind_a_gap():
+    """60 Hz with stamps of 10 ms: 10 ms, 20 ms and 20 ms apart, over and over."""
+    true = np.delete(np.arange(3000) / 60.0, slice(1200, 1300))
+    stamps = audited(np.floor(true / 0.01 + 1e-9) * 0.01, log(), "interrogator")
+    assert "some missing in a pattern of 3, look the same" in stamps.findings[0].text
+    stamps = audited(np.floor(true / 0.01001) * 0.01001, log(), "interrogator")
+    assert "look the same" not in stamps.findings[0].text
 
 
 @pytest.mark.parametrize("share", [0.02, 0.1, 0.3, 0.5])

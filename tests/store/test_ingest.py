@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import random
 import sys
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from tethertest.pipeline.conditioned import conditioned, read_logs
 from tethertest.pipeline.stored import run_of
 from tethertest.readers import load_run
 from tethertest.store import load_store
-from tethertest.studies.crash_safety import Battery, Tally, kill_at_random, run_battery
+from tethertest.studies.crash_safety import Battery, Tally, kill_at_random, starve
 
 ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "rigs"
@@ -101,8 +102,6 @@ def test_a_store_among_raw_logs_only_where_it_is_asked_for(
 
 
 def test_a_kill_at_any_instant_leaves_the_old_store_or_the_new_one(run: Path, tmp_path: Path) -> None:
-    import random
-
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     tally = Tally()
@@ -112,9 +111,23 @@ def test_a_kill_at_any_instant_leaves_the_old_store_or_the_new_one(run: Path, tm
 
 
 @pytest.mark.verify
-def test_two_hundred_kills_and_fifty_limits(run: Path) -> None:
-    tally = run_battery(run, RIGS, 200, 50)
+@pytest.mark.parametrize("part", range(4))  # of two hundred kills, so that processes share them
+def test_fifty_kills_a_part(run: Path, tmp_path: Path, part: int) -> None:
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    tally = Tally()
+    kill_at_random(Battery(run, RIGS, scratch), 50, random.Random(part), tally)
     assert tally.faults == []
     stepwise = "step of the writing phase"
-    assert tally.outcomes[stepwise, "left-over"] > 50
-    assert tally.outcomes[stepwise, "old"] + tally.outcomes[stepwise, "new"] == 100
+    assert tally.outcomes[stepwise, "left-over"] > 12
+    assert tally.outcomes[stepwise, "old"] + tally.outcomes[stepwise, "new"] == 25
+
+
+@pytest.mark.verify
+def test_fifty_limits_of_the_file_size(run: Path, tmp_path: Path) -> None:
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    tally = Tally()
+    starve(Battery(run, RIGS, scratch), 50, tally)
+    assert tally.faults == []
+    assert tally.outcomes["file-size limit", "old"] == 50

@@ -40,7 +40,13 @@ LIMITS = 50
 SEED = 20
 #: each ingest is a process of its own, forked from one that has loaded the libraries
 _FORKS: Final = multiprocessing.get_context("forkserver")
-_FORKS.set_forkserver_preload(["tethertest.pipeline.ingest", "tethertest.cli.ingest"])
+_FORKS.set_forkserver_preload(
+    [
+        *("tethertest.pipeline.ingest", "tethertest.cli.ingest", "tethertest.kernels.fields"),
+        *("numba", "pandas", "pint", "pydantic", "nptdms", "h5py"),
+        *("scipy.signal", "scipy.interpolate", "scipy.fft"),
+    ]
+)
 #: after so many kills the next ingest is let end, to see that it takes left-overs away
 _CLEANED = 5
 _BAD_INPUT = 2

@@ -124,10 +124,10 @@ def test_fifty_kills_a_part(run: Path, tmp_path: Path, part: int) -> None:
 
 
 @pytest.mark.verify
-def test_fifty_limits_of_the_file_size(run: Path, tmp_path: Path) -> None:
+def test_twenty_limits_of_the_file_size(run: Path, tmp_path: Path) -> None:
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     tally = Tally()
-    starve(Battery(run, RIGS, scratch), 50, tally)
+    starve(Battery(run, RIGS, scratch), 20, tally)
     assert tally.faults == []
-    assert tally.outcomes["file-size limit", "old"] == 50
+    assert tally.outcomes["file-size limit", "old"] == 20

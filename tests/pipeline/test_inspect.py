@@ -253,6 +253,14 @@ def test_stamps_cut_to_nearly_a_step_have_the_rate_of_the_rows(tmp_path: Path) -
     assert found["channels"][0]["rate"] == pytest.approx(70.0, rel=1e-5)
 
 
+def test_a_gap_among_stamps_that_are_cut_is_told(tmp_path: Path) -> None:
+    time = np.arange(2000) / 70.0 + 3.7 * (np.arange(2000) >= 1000)
+    path = log(tmp_path / "a.csv", np.floor(time / 0.01) * 0.01, {"F [N]": np.sin(time)})
+    (base,) = inspect_path(path)["time_bases"]
+    assert "; stamps cut to 10 ms; 1 gap, the longest 3.7" in base["text"]
+    assert base["flags"]["gap"] == 1
+
+
 def test_jitter_of_the_stamps_is_given_in_seconds(tmp_path: Path) -> None:
     time, values = signal()
     path = log(

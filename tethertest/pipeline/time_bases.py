@@ -105,7 +105,7 @@ def _sentence(
         said.append(f"{words}; the mean rate is {rate:.4g} Hz")
     elif seen.jitter > JITTER_FRACTION * seen.median:
         said.append(f"jittered by {_seconds(seen.jitter)} (standard deviation)")
-    elif holes.any():
+    if holes.any() and (seen.quantised is not None or len(said) == 1):
         long = int(np.argmax(step))
         longest = f"the longest {_seconds(float(step[long]))} after {ordered[long]:.6g} s"
         said.append(f"{_number(holes, 'gap')}, {longest}")

@@ -240,27 +240,6 @@ def test_a_log_with_dropped_rows_everywhere_is_jittered_with_share_and_mean_rate
     assert base["mean_rate"] == pytest.approx(0.75 * RATE, rel=0.03)
 
 
-def test_stamps_cut_to_nearly_a_step_have_the_rate_of_the_rows(tmp_path: Path) -> None:
-    """Steps of 10 ms and 20 ms of rows every 14.3 ms: neither jitter nor gaps, nor 100 Hz."""
-    time = np.arange(2000) / 70.0
-    path = log(tmp_path / "a.csv", np.floor(time / 0.01) * 0.01, {"F [N]": np.sin(time)})
-    found = inspect_path(path)
-    (base,) = found["time_bases"]
-    assert base["step"] == pytest.approx(1.0 / 70.0, rel=1e-5)
-    assert base["quantum"] == pytest.approx(0.01, rel=1e-3)
-    assert base["text"].endswith("every 14.29 ms; stamps cut to 10 ms")
-    assert base["flags"]["gap"] == 0
-    assert found["channels"][0]["rate"] == pytest.approx(70.0, rel=1e-5)
-
-
-def test_a_gap_among_stamps_that_are_cut_is_told(tmp_path: Path) -> None:
-    time = np.arange(2000) / 70.0 + 3.7 * (np.arange(2000) >= 1000)
-    path = log(tmp_path / "a.csv", np.floor(time / 0.01) * 0.01, {"F [N]": np.sin(time)})
-    (base,) = inspect_path(path)["time_bases"]
-    assert "; stamps cut to 10 ms; 1 gap, the longest 3.7" in base["text"]
-    assert base["flags"]["gap"] == 1
-
-
 def test_jitter_of_the_stamps_is_given_in_seconds(tmp_path: Path) -> None:
     time, values = signal()
     path = log(

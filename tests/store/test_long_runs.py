@@ -107,7 +107,7 @@ def test_constants_of_a_thinned_copy_agree_within_their_errors(name: str, tmp_pa
 
 def run_of_tensions(tmp_path: Path, run: Path, time: np.ndarray, values: np.ndarray) -> tuple[Run, RawLog]:
     channel = RawChannel("tension_top", "N", time, values)
-    return load_run(run, RIGS), RawLog(tmp_path / "tension.csv", "delimited", "00", None, (channel,))
+    return load_run(run, RIGS), RawLog(tmp_path / "tension.csv", "delimited", None, (channel,))
 
 
 def dropped_twice(time: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from tethertest.errors import FileFormatError
+from tethertest.readers.fingerprint import unchanged
 from tethertest.readers.formats import (
     archive,
     catman,
@@ -151,11 +152,12 @@ def read_log(path: Path | str, settings: Log | None = None) -> RawLog:
     Raises
     ------
     FileFormatError
-        The file is missing, empty, cut, ambiguous, or belongs to no reader.
+        The file is missing, empty, cut, ambiguous, changes while it is read, or belongs to no reader.
     """
-    reader, reason = identified(path, settings)
-    refuse_keys(Path(path), reader, settings)
-    return replace(reader.read(Path(path), settings), reason=reason)
+    with unchanged(Path(path)) as before:
+        reader, reason = identified(path, settings)
+        refuse_keys(Path(path), reader, settings)
+        return replace(reader.read(Path(path), settings), reason=reason, fingerprint=before)
 
 
 def refuse_keys(path: Path, reader: Reader, settings: Log | None) -> None:

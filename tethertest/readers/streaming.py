@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from tethertest.readers.fingerprint import unchanged
 from tethertest.readers.formats import delimited, tdms
 from tethertest.readers.registry import identified, refuse_keys
 from tethertest.readers.text.textlog import Progress
@@ -58,16 +59,17 @@ def stream_log(
 
 
 def _pieces(path: Path, settings: Log | None, rows: int, progress: Progress | None) -> Iterator[RawLog]:
-    reader, reason = identified(path, settings)
-    refuse_keys(path, reader, settings)
-    if reader is delimited:
-        pieces = delimited.stream(path, settings, rows, progress)
-    elif reader is tdms:
-        pieces = tdms.stream(path, settings, rows, progress)
-    else:
-        pieces = iter([reader.read(path, settings)])
-    for piece in pieces:
-        yield replace(piece, reason=reason)
+    with unchanged(path) as before:
+        reader, reason = identified(path, settings)
+        refuse_keys(path, reader, settings)
+        if reader is delimited:
+            pieces = delimited.stream(path, settings, rows, progress)
+        elif reader is tdms:
+            pieces = tdms.stream(path, settings, rows, progress)
+        else:
+            pieces = iter([reader.read(path, settings)])
+        for piece in pieces:
+            yield replace(piece, reason=reason, fingerprint=before)
     if progress is not None:
         size = path.stat().st_size
         progress(size, size)

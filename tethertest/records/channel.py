@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntFlag
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
@@ -54,13 +55,21 @@ class RawChannel:
     as_written: FloatArray | None = None  #: (n,) where the reader put values of gratings into other columns
 
 
+class Fingerprint(Protocol):
+    """What tells the file of a log from any other."""
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the file."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class RawLog:
     """One log as read, with everything that was concluded from its content."""
 
     path: Path
     format: str  #: NAME of the reader
-    sha256: str
     start: dt.datetime | None  #: first stamp as written; naive where the file has no zone
     channels: tuple[RawChannel, ...]
     encoding: str = ""
@@ -71,6 +80,18 @@ class RawLog:
     rate: float | None = None  #: [Hz], as the file states it
     remarks: tuple[str, ...] = ()  #: what a person should know: lost rows, text events, segments
     reason: str = ""  #: why this reader was chosen
+    fingerprint: Fingerprint | None = None  #: None where a reader was called by itself
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the file as it lies on disk, taken when it is first asked for; "" without a fingerprint.
+
+        Raises
+        ------
+        FileFormatError
+            The file has changed since it was read.
+        """
+        return "" if self.fingerprint is None else self.fingerprint.sha256
 
 
 @dataclass(frozen=True, slots=True)

@@ -154,9 +154,7 @@ class Bench:
                 if name in self.columns
             )
             start = self.starts.get(clock, DATE + dt.timedelta(seconds=float(time[0])))
-            result[file] = RawLog(
-                Path(file), "test", "0" * 64, start.replace(tzinfo=None), channels, header_line=4
-            )
+            result[file] = RawLog(Path(file), "test", start.replace(tzinfo=None), channels, header_line=4)
         return result
 
     def with_file(self, **changes: object) -> Run:

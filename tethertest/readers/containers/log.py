@@ -7,7 +7,6 @@ import numpy as np
 from tethertest.readers.channels import raw_channel, with_units
 from tethertest.readers.containers.table import Column, Table, listed, with_column_names
 from tethertest.readers.containers.time import time_axis
-from tethertest.readers.text.document import file_sha256
 from tethertest.readers.text.stamps import stamp_kind
 from tethertest.readers.text.table import is_number
 from tethertest.readers.timeunits import CALENDARS
@@ -65,7 +64,6 @@ def log_of(name: str, table: Table, settings: Log | None, *, encoding: str = "")
     return RawLog(
         path=table.path,
         format=name,
-        sha256=file_sha256(table.path),
         encoding=encoding,
         start=axis.start,
         channels=with_units(table.path, channels, settings, table.names),

@@ -10,7 +10,7 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.containers.table import listed, toml_text
 from tethertest.readers.containers.workbook import is_in
 from tethertest.readers.containers.zips import ZIP_MAGIC, member_stream, members, opened_zip
-from tethertest.readers.text.document import Head, file_sha256
+from tethertest.readers.text.document import Head
 from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
 
@@ -36,7 +36,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     Returns
     -------
     RawLog
-        As the member's reader returns it, with the archive's path and hash.
+        As the member's reader returns it, with the archive's path.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def _member_log(path: Path, name: str, member: Path, settings: Log | None) -> Ra
         place = f"{path}:{name}"
         raise FileFormatError(error.problem, error.remedy, path=place, line=error.line) from error
     remarks = (f"{name!r} of the archive is read: {log.reason}", *log.remarks)
-    return replace(log, path=path, sha256=file_sha256(path), remarks=remarks)
+    return replace(log, path=path, remarks=remarks)
 
 
 def _nested(path: Path) -> FileFormatError:

@@ -11,7 +11,7 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.catman_header import MARK, Header, read_header
 from tethertest.readers.formats.catman_time import channel_times, is_time
-from tethertest.readers.text.document import Head, file_sha256, read_document
+from tethertest.readers.text.document import Head, read_document
 from tethertest.readers.text.stamps import Stamps, parse_stamps, time_zone_of
 from tethertest.readers.text.table import Rows, check_widths, find_rows, read_columns
 from tethertest.records.channel import RawLog
@@ -82,7 +82,6 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return RawLog(
         path=path,
         format=NAME,
-        sha256=file_sha256(path),
         start=None if stamps is None else stamps.start(zone),
         channels=with_units(path, channels, settings, names),
         encoding=document.encoding,

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from tethertest.readers.channels import raw_channel, with_units
-from tethertest.readers.text.document import Head, file_sha256
+from tethertest.readers.text.document import Head
 from tethertest.readers.text.rows import Growing, Tally, regrouped
 from tethertest.readers.text.table_log import TableLog, open_table
 from tethertest.readers.text.textlog import Progress
@@ -50,20 +49,18 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     FileFormatError
         The log is empty, cut or ragged, has text among numbers, or can be read in two ways.
     """
-    with ThreadPoolExecutor(1) as pool:
-        digest = pool.submit(file_sha256, path)
-        table = open_table(path, settings)
-        tally = Tally(table.plan.names)
-        columns = [Growing(table.expected_rows) for _ in range(1 + len(table.channels))]
-        encoding = table.text.encoding
-        for block in table.blocks():
-            for column, part in zip(columns, (block.time, *block.values), strict=True):
-                column.extend(part)
-            tally.add(block)
-            encoding = block.encoding
-        arrays = [column.array() for column in columns]
-        remarks = (*table.remarks_before, *tally.remarks(), *table.remarks_after)
-        return _log(table, settings, arrays, encoding, remarks, digest.result())
+    table = open_table(path, settings)
+    tally = Tally(table.plan.names)
+    columns = [Growing(table.expected_rows) for _ in range(1 + len(table.channels))]
+    encoding = table.text.encoding
+    for block in table.blocks():
+        for column, part in zip(columns, (block.time, *block.values), strict=True):
+            column.extend(part)
+        tally.add(block)
+        encoding = block.encoding
+    arrays = [column.array() for column in columns]
+    remarks = (*table.remarks_before, *tally.remarks(), *table.remarks_after)
+    return _log(table, settings, arrays, encoding, remarks)
 
 
 def stream(path: Path, settings: Log | None, rows: int, progress: Progress | None = None) -> Iterator[RawLog]:
@@ -74,7 +71,6 @@ def stream(path: Path, settings: Log | None, rows: int, progress: Progress | Non
     FileFormatError
         As `read`, once the mistake is reached.
     """
-    digest = file_sha256(path)
     table = open_table(path, settings)
     before, after = table.remarks_before, table.remarks_after
     for block in regrouped(table.blocks(progress), rows):
@@ -82,7 +78,7 @@ def stream(path: Path, settings: Log | None, rows: int, progress: Progress | Non
         tally.add(block)
         remarks = (*before, *tally.remarks(), *after)
         before = after = ()
-        yield _log(table, settings, (block.time, *block.values), block.encoding, remarks, digest)
+        yield _log(table, settings, (block.time, *block.values), block.encoding, remarks)
 
 
 def _log(
@@ -91,7 +87,6 @@ def _log(
     arrays: Sequence[FloatArray],
     encoding: str,
     remarks: tuple[str, ...],
-    digest: str,
 ) -> RawLog:
     """Return the record; the first of the arrays is the time."""
     layout, scale, path = table.layout, table.scale, table.text.path
@@ -103,7 +98,6 @@ def _log(
     return RawLog(
         path=path,
         format=NAME,
-        sha256=digest,
         start=scale.start,
         channels=with_units(path, channels, settings, layout.names),
         encoding=encoding,

@@ -11,7 +11,7 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.enlight import find_preamble, has_mark
 from tethertest.readers.text.cells import split_unit
-from tethertest.readers.text.document import HEAD_BYTES, Head, file_sha256, read_document
+from tethertest.readers.text.document import HEAD_BYTES, Head, read_document
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
@@ -88,7 +88,6 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return RawLog(
         path=path,
         format=NAME,
-        sha256=file_sha256(path),
         start=stamps.start(time_zone_of(settings.time_zone if settings is not None else None, path)),
         channels=with_units(path, channels, settings),
         encoding=document.encoding,

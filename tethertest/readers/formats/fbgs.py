@@ -12,7 +12,7 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.fbgs_clock import line_clock
 from tethertest.readers.formats.fbgs_placing import is_wavelength, placed
-from tethertest.readers.text.document import Head, file_sha256, read_document
+from tethertest.readers.text.document import Head, read_document
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import Columns, Rows, check_widths, find_rows, read_columns
 from tethertest.records.arrays import BoolArray, frozen
@@ -91,7 +91,6 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return RawLog(
         path=path,
         format=NAME,
-        sha256=file_sha256(path),
         start=stamps.start(time_zone_of(settings.time_zone if settings is not None else None, path)),
         channels=with_units(path, channels, settings),
         encoding=document.encoding,

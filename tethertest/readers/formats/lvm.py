@@ -16,7 +16,7 @@ import numpy as np
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.lvm_segments import Segment, find_segments
-from tethertest.readers.text.document import Document, Head, file_sha256, read_document
+from tethertest.readers.text.document import Document, Head, read_document
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
@@ -101,7 +101,6 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return RawLog(
         path=path,
         format=NAME,
-        sha256=file_sha256(path),
         start=start,
         channels=with_units(path, channels, settings),
         encoding=document.encoding,

@@ -17,7 +17,7 @@ from tethertest.readers.containers.mdf_blocks import check_level_3, check_level_
 from tethertest.readers.containers.rehearsal import rehearse
 from tethertest.readers.containers.table import refuse_settings
 from tethertest.readers.formats.mdf_channels import channels_of
-from tethertest.readers.text.document import Head, file_sha256, read_bytes
+from tethertest.readers.text.document import Head, read_bytes
 from tethertest.readers.text.stamps import time_zone_of
 from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
@@ -66,7 +66,6 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return RawLog(
         path=path,
         format=NAME,
-        sha256=file_sha256(path),
         start=start,
         channels=with_units(path, channels, settings),
         remarks=tuple(remarks),

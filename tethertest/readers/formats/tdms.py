@@ -7,7 +7,6 @@ import logging
 import shutil
 import tempfile
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +17,7 @@ import numpy as np
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, with_units
 from tethertest.readers.formats.tdms_channels import Key, Plan, planned
-from tethertest.readers.text.document import Head, file_sha256, opened
+from tethertest.readers.text.document import Head, opened
 from tethertest.readers.text.stamps import time_zone_of
 from tethertest.readers.text.textlog import Progress
 from tethertest.records.arrays import FloatArray, frozen
@@ -56,8 +55,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     FileFormatError
         The file is cut or damaged, holds no data, or a channel has no time.
     """
-    with ThreadPoolExecutor(1) as pool, _opened(path) as file:
-        digest = pool.submit(file_sha256, path)
+    with _opened(path) as file:
         plan = planned(path, file)
         arrays = {key: np.empty(length) for key, length in plan.lengths.items()}
         filled = dict.fromkeys(arrays, 0)
@@ -76,7 +74,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
                     times[clock] = frozen(source.time(0, len(values)))
                 time = times[clock]
             channels.append(raw_channel(source.name, source.unit, time, values))
-        return _log(path, plan, channels, settings, digest.result())
+        return _log(path, plan, channels, settings)
 
 
 def stream(path: Path, settings: Log | None, rows: int, progress: Progress | None = None) -> Iterator[RawLog]:
@@ -91,7 +89,6 @@ def stream(path: Path, settings: Log | None, rows: int, progress: Progress | Non
     FileFormatError
         As `read`, once the mistake is reached.
     """
-    digest = file_sha256(path)
     with _opened(path) as file:
         plan = planned(path, file)
         held: dict[Key, list[FloatArray]] = {key: [] for key in plan.lengths}
@@ -104,12 +101,12 @@ def stream(path: Path, settings: Log | None, rows: int, progress: Progress | Non
             if progress is not None:
                 progress(size * done // total, size)
             while max(counts := plan.ready(held), default=0) >= rows:
-                yield _log(path, plan, _taken(plan, held, begun, counts, rows), settings, digest)
+                yield _log(path, plan, _taken(plan, held, begun, counts, rows), settings)
                 plan = replace(plan, remarks=())
                 pending = False
         while pending or max(plan.ready(held), default=0) > 0:
             counts = plan.ready(held)
-            yield _log(path, plan, _taken(plan, held, begun, counts, rows), settings, digest)
+            yield _log(path, plan, _taken(plan, held, begun, counts, rows), settings)
             plan = replace(plan, remarks=())
             pending = False
 
@@ -157,12 +154,11 @@ def _chunks(path: Path, file: Any, plan: Plan) -> Iterator[tuple[Key, FloatArray
         yield from parts
 
 
-def _log(path: Path, plan: Plan, channels: Iterable[RawChannel], settings: Log | None, digest: str) -> RawLog:
+def _log(path: Path, plan: Plan, channels: Iterable[RawChannel], settings: Log | None) -> RawLog:
     zone = time_zone_of(settings.time_zone if settings is not None else None, path)
     return RawLog(
         path=path,
         format=NAME,
-        sha256=digest,
         start=None if plan.start is None else _as_datetime(plan.start, zone),
         channels=with_units(path, channels, settings),
         rate=plan.rate,

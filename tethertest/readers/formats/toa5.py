@@ -18,7 +18,7 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, with_units
-from tethertest.readers.text.document import Document, Head, file_sha256, read_document
+from tethertest.readers.text.document import Document, Head, read_document
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
@@ -110,7 +110,6 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return RawLog(
         path=path,
         format=NAME,
-        sha256=file_sha256(path),
         start=stamps.start(time_zone_of(settings.time_zone if settings is not None else None, path)),
         channels=with_units(path, channels, settings),
         encoding=document.encoding,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gzip
-import hashlib
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -25,8 +24,6 @@ from tethertest.readers.text.encoding import decodes, detect_encoding
 
 #: enough to pass a header of more than a hundred long lines
 HEAD_BYTES: Final = 65536
-#: bytes of a file that are hashed without a turn of another thread
-_HASHED_AT_ONCE: Final = 2**22
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,19 +61,6 @@ class Document:
             if start == 0:
                 return b""
         return self.body[start:]
-
-
-def file_sha256(path: Path) -> str:
-    """Return the SHA-256 of the file as it lies on disk.
-
-    In few large pieces: beside a reader in another thread, each piece waits for the interpreter twice.
-    """
-    digest = hashlib.sha256()
-    piece = bytearray(_HASHED_AT_ONCE)
-    with path.open("rb", buffering=0) as stream:
-        while count := stream.readinto(piece):
-            digest.update(memoryview(piece)[:count])
-    return digest.hexdigest()
 
 
 def read_head(path: Path, encoding: str | None = None) -> Head:

@@ -55,7 +55,7 @@ class Sampling:
         elif stamps != "exact":
             quantum = 1e-3 * float(stamps.split(maxsplit=1)[0])
             reading = np.floor(reading / quantum) * quantum
-        result = audited(reading, RawLog(Path("log.csv"), "study", "0" * 64, None, ()), "clock")
+        result = audited(reading, RawLog(Path("log.csv"), "study", None, ()), "clock")
         self.time = result.time
         self.true = true[result.rows]
         self._flags = result.flags

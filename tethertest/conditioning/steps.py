@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Flag
@@ -54,24 +55,26 @@ def _steps(channel: Channel, others: Sequence[Channel]) -> BoolArray:
     if sigma == 0.0 or values.size < 4 * AROUND:
         return found
     edge = np.diff(values)
-    for row in np.flatnonzero(np.abs(edge) > HEIGHT_SIGMAS * np.sqrt(2.0) * sigma):
-        if _alone(values, edge, int(row), channel.usable) and _stays(
-            channel, values, others, int(row), edge[row]
-        ):
+    for row in _alone(values, edge, sigma, channel.usable).tolist():
+        if _stays(channel, values, others, row, float(edge[row])):
             found[row + 1] = True
     return found
 
 
-def _alone(values: FloatArray, edge: FloatArray, row: int, usable: BoolArray) -> bool:
-    """Return whether an edge stands alone between two levels."""
-    if row < AROUND or row + AROUND + 1 >= edge.size or not usable[row - BESIDE : row + BESIDE + 2].all():
-        return False
-    around = np.concatenate((edge[row - AROUND : row], edge[row + 1 : row + AROUND + 1]))
-    if abs(edge[row]) <= ISOLATION * float(np.max(np.abs(around))):
-        return False
-    before = float(np.mean(values[row - BESIDE + 1 : row + 1]))
-    after = float(np.mean(values[row + 1 : row + 1 + BESIDE]))
-    return bool((after - before) / edge[row] > STAYS_NEAR)
+def _alone(values: FloatArray, edge: FloatArray, sigma: float, usable: BoolArray) -> np.ndarray:
+    """Return the rows of edges that stand alone between two levels."""
+    height = np.abs(edge)
+    rows = np.arange(AROUND, edge.size - AROUND - 1)
+    highest = maximum_filter1d(height, AROUND)  # of the five before a row, itself and the four after
+    half = AROUND // 2
+    beside = np.maximum(highest[rows - half], highest[rows + AROUND - half + 1])
+    rows = rows[(height[rows] > HEIGHT_SIGMAS * np.sqrt(2.0) * sigma) & (height[rows] > ISOLATION * beside)]
+    near = rows[:, None] + np.arange(1 - BESIDE, 1 + BESIDE)
+    levels = values[near].reshape(rows.size, 2, BESIDE).mean(axis=2)
+    stays = (levels[:, 1] - levels[:, 0]) / edge[rows] > STAYS_NEAR
+    whole = usable[rows[:, None] + np.arange(-BESIDE, BESIDE + 2)].all(axis=1)
+    alone: np.ndarray = rows[stays & whole]
+    return alone
 
 
 def _stays(channel: Channel, values: FloatArray, others: Sequence[Channel], row: int, height: float) -> bool:

@@ -65,6 +65,21 @@ def test_without_damping_it_is_the_exact_waves(top: Top) -> None:
         np.testing.assert_allclose(found.fields[name], exact.fields[name], rtol=0.0, atol=atol)
 
 
+@pytest.mark.parametrize("top", TOPS.values(), ids=TOPS)
+@pytest.mark.parametrize("factor", [1, 2])
+def test_the_field_holds_the_extremes_of_gauges_at_its_places(top: Top, factor: int) -> None:
+    """The field's waves are products of one another, those of gauges are exponentials."""
+    places = tuple(np.linspace(0.0, 1.0, 41))
+    scene = replace(DAMPED, top=top, output=replace(DAMPED.output, gauges=places))
+    along, alone = (run_axial_transform(scene, factor=factor, with_field=given) for given in (True, False))
+    np.testing.assert_array_equal(along.tension, alone.tension)
+    np.testing.assert_array_equal(along.platform_position, alone.platform_position)
+    np.testing.assert_allclose(along.field.position, places, atol=1e-15)
+    for extreme in ("maximum", "minimum"):
+        of_field, of_gauges = getattr(along.field, extreme), getattr(alone.field, extreme)
+        np.testing.assert_allclose(of_field, of_gauges, rtol=0.0, atol=1e-11 * np.max(of_gauges))
+
+
 def test_a_refined_march_of_the_damped_cable_approaches_it() -> None:
     exact = run_axial_transform(DAMPED, factor=2)
     marches = [run_chain(DAMPED, cells, viscous=False) for cells in (20, 80)]

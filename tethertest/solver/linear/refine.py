@@ -92,7 +92,7 @@ def _along(problem: Problem) -> Refined:
     if problem.cells is not None:
         solution = run_axial_transform(scene, measured=measured)
         return Refined(solution, "linear", name, problem.cells, np.nan, Status.UNJUDGED)
-    coarse = run_axial_transform(scene, measured=measured, factor=_FACTORS[0])
+    coarse = run_axial_transform(scene, measured=measured, factor=_FACTORS[0], with_field=False)
     error = np.inf
     for factor in _FACTORS[1:]:
         fine = run_axial_transform(scene, measured=measured, factor=factor)

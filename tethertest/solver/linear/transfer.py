@@ -49,23 +49,53 @@ def axial_transfer(scene: Scene, s: ComplexArray, gauges: FloatArray) -> AxialTr
     gauges : (g,) float64
         Fractions of the length from the bottom.
     """
-    rest = rest_state(scene)
-    s = np.asarray(s, dtype=np.complex128)[:, None]
-    stiffness = rest.axial_stiffness * (1.0 + s * (scene.cable.axial_damping_time or 0.0))
-    number = s * np.sqrt(rest.mass_per_length / stiffness)
-    if scene.top.kind == "fixed":
-        reflection = np.full_like(s, -1.0)
-    else:
-        hover = float(per_direction(scene.top.hover_stiffness)[2])
-        damping = float(per_direction(scene.top.hover_damping)[2])
-        body = (scene.top.mass or 0.0) * s**2 + damping * s + hover
-        reflection = (stiffness * number - body) / (stiffness * number + body)
-    place = rest.length * np.asarray(gauges, dtype=np.float64)[None, :]
-    rising = np.exp(-number * place)
-    falling = reflection * np.exp(-number * (2.0 * rest.length - place))
-    size = 1.0 / (1.0 + reflection * np.exp(-2.0 * number * rest.length))
-    strain = number * size * (falling - rising)
-    return AxialTransfer(stiffness * strain, strain, size * (rising + falling))
+    waves = _EndWaves.of(scene, np.asarray(s, dtype=np.complex128)[:, None])
+    place = waves.length * np.asarray(gauges, dtype=np.float64)[None, :]
+    rising = np.exp(-waves.number * place)
+    falling = waves.reflection * np.exp(-waves.number * (2.0 * waves.length - place))
+    strain = waves.number * waves.size * (falling - rising)
+    return AxialTransfer(waves.stiffness * strain, strain, waves.size * (rising + falling))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _EndWaves:
+    """What the ends make of a wave, whatever the place; arrays of the shape of s."""
+
+    length: float  #: unstretched [m]
+    stiffness: ComplexArray  #: [N], damping included
+    number: ComplexArray  #: of the wave, decaying [1/m]
+    reflection: ComplexArray  #: at the top
+    size: ComplexArray  #: of the wave from the bottom per unit of displacement there
+
+    @classmethod
+    def of(cls, scene: Scene, s: ComplexArray) -> _EndWaves:
+        """Return the waves of a scene at complex frequencies."""
+        rest = rest_state(scene)
+        stiffness = rest.axial_stiffness * (1.0 + s * (scene.cable.axial_damping_time or 0.0))
+        number = s * np.sqrt(rest.mass_per_length / stiffness)
+        if scene.top.kind == "fixed":
+            reflection = np.full_like(s, -1.0)
+        else:
+            hover = float(per_direction(scene.top.hover_stiffness)[2])
+            damping = float(per_direction(scene.top.hover_damping)[2])
+            body = (scene.top.mass or 0.0) * s**2 + damping * s + hover
+            reflection = (stiffness * number - body) / (stiffness * number + body)
+        size = 1.0 / (1.0 + reflection * np.exp(-2.0 * number * rest.length))
+        return cls(rest.length, stiffness, number, reflection, size)
+
+
+def _tension_along(scene: Scene, s: ComplexArray, stations: int) -> ComplexArray:
+    """Return the tension per unit of bottom displacement at so many places from end to end, (m, n)."""
+    waves = _EndWaves.of(scene, s)
+    decay = np.exp(-waves.number * (waves.length / (stations - 1)))
+    rising = np.empty((stations, s.size), dtype=np.complex128)
+    rising[0] = 1.0
+    for station in range(1, stations):  # a product in place of an exponential: eight times as fast
+        np.multiply(rising[station - 1], decay, out=rising[station])
+    tension = rising[::-1] * (waves.reflection * rising[-1])
+    tension -= rising
+    tension *= waves.stiffness * waves.number * waves.size
+    return np.asarray(tension)
 
 
 def tension_transfer(scene: Scene, frequency: FloatArray, gauges: FloatArray) -> ComplexArray:
@@ -88,7 +118,9 @@ def tension_transfer(scene: Scene, frequency: FloatArray, gauges: FloatArray) ->
     return axial_transfer(scene, np.asarray(2j * np.pi * frequency), gauges).tension
 
 
-def run_axial_transform(scene: Scene, *, measured: MeasuredMotion | None = None, factor: int = 1) -> Solution:
+def run_axial_transform(
+    scene: Scene, *, measured: MeasuredMotion | None = None, factor: int = 1, with_field: bool = True
+) -> Solution:
     """Solve the waves along a vertical or straight cable, damped or not, under a smooth motion.
 
     Air drag, being quadratic, is left out.
@@ -101,6 +133,8 @@ def run_axial_transform(scene: Scene, *, measured: MeasuredMotion | None = None,
         Bottom displacement for ``motion = "measured"``.
     factor : int
         Input samples per output time.
+    with_field : bool
+        Follow the tension along the whole cable; without, its field is that of the gauges.
 
     Raises
     ------
@@ -123,22 +157,27 @@ def run_axial_transform(scene: Scene, *, measured: MeasuredMotion | None = None,
         remedy = 'set [bottom] start = "ramp", begin data at rest, or set axial_damping_time to 0'
         raise DataError(message, remedy)
     s = line.frequencies(factor)
-    spectrum = drive.spectrum(s)[:, None]
+    spectrum, growth = drive.spectrum(s), np.exp(line.eta * time)
 
     def inverted(transfer: ComplexArray) -> FloatArray:
-        series = irfft(transfer * spectrum, drive.weighted.size, axis=0)
-        kept = series[: (line.rows - 1) * factor + 1 : factor]
-        return np.asarray(kept * np.exp(line.eta * time)[:, None])
+        """Return the time series (rows, g) of a transfer (g, n)."""
+        series = irfft(transfer * spectrum, drive.weighted.size, axis=1)
+        kept = series[:, : (line.rows - 1) * factor + 1 : factor]
+        return np.ascontiguousarray((kept * growth).T)
 
     gauges = np.asarray(output.gauges, dtype=np.float64)
-    stations = np.linspace(0.0, 1.0, _STATIONS)
-    here, along = axial_transfer(scene, s, gauges), axial_transfer(scene, s, stations)
-    tension = rest.bottom_tension + stations * rest.weight + inverted(along.tension)
+    stations = np.linspace(0.0, 1.0, _STATIONS) if with_field else gauges
+    here = axial_transfer(scene, s, np.append(gauges, 1.0))
+    displacement = here.displacement[:, :-1].T
+    at_gauges = rest.bottom_tension + gauges * rest.weight + inverted(here.tension[:, :-1].T)
+    tension = at_gauges
+    if with_field:
+        tension = rest.bottom_tension + stations * rest.weight + inverted(_tension_along(scene, s, _STATIONS))
     return Solution(
         time=time,
-        tension=rest.bottom_tension + gauges * rest.weight + inverted(here.tension),
-        strain=inverted(here.strain),
-        platform_position=inverted(along.displacement[:, -1:])[:, 0],
+        tension=at_gauges,
+        strain=inverted(here.strain[:, :-1].T),
+        platform_position=inverted(here.displacement[:, -1:].T)[:, 0],
         field=field_of_rows(time, stations, tension),
         time_step=drive.step,
         steps_done=time.size,
@@ -146,8 +185,8 @@ def run_axial_transform(scene: Scene, *, measured: MeasuredMotion | None = None,
         fields=axial_fields(
             scene,
             rest,
-            lambda: inverted(here.displacement),
-            lambda: inverted(here.displacement * s[:, None]),
+            lambda: inverted(displacement),
+            lambda: inverted(displacement * s),
             time.size,
         ),
     )

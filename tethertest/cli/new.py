@@ -22,12 +22,12 @@ def new(
     ] = False,
 ) -> None:
     """Look at the logs of a folder and write a commented run.toml to complete."""
-    from tethertest.pipeline.draft_text import TODO
+    from tethertest.pipeline.draft_text import TODO, draft_text
     from tethertest.pipeline.new_run import new_run
 
     path, draft = new_run(run, logs or (), rigs)
     left = [
-        f"{number}: {line}" for number, line in enumerate(draft.text.splitlines(), 1) if TODO in line
+        f"{number}: {line}" for number, line in enumerate(draft_text(draft).splitlines(), 1) if TODO in line
         and number > 2
     ]  # fmt: skip
     if as_json:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from tethertest.pipeline.new_run import Draft, DraftLog
+from tethertest.pipeline.draft import Draft, DraftLog
 
 #: a value that a person must replace; no key accepts it
 TODO = "TODO"

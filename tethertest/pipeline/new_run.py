@@ -5,13 +5,14 @@ from __future__ import annotations
 import datetime as dt
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from tethertest.conditioning.stamp_steps import steps_of
 from tethertest.errors import TethertestError
+from tethertest.pipeline.draft import Draft, DraftLog
 from tethertest.pipeline.draft_text import TODO, draft_text
 from tethertest.pipeline.sensor_names import Matched, matched
 from tethertest.readers import identify, load_rig, read_log
@@ -30,40 +31,6 @@ ZONE_STEP, ZONE_SLACK = 900.0, 60.0
 NEARER = 1.5
 #: the slowest drive looked for [Hz], and the smallest share of the motion that a drive explains
 SLOWEST, DRIVEN = 0.02, 0.5
-
-
-@dataclass(frozen=True, slots=True)
-class DraftLog:
-    """One log as the draft has it."""
-
-    file: str
-    format: str
-    clock: str  #: name of an instrument, or `TODO`
-    why: str  #: what the clock rests on
-    matched: Matched
-    problem: str = ""  #: the reader's own words where it cannot read the log as it is
-    remedy: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Draft:
-    """Everything that was concluded from the folder."""
-
-    folder: Path
-    rig: str  #: name of the rig file, or `TODO`
-    rigs: tuple[str, ...]  #: rig files that were found
-    mode: str
-    modes: tuple[str, ...]
-    date: str
-    date_why: str
-    drive_hint: str
-    logs: tuple[DraftLog, ...]
-    left_out: tuple[tuple[str, str], ...]  #: files that are no logs, and why
-
-    @property
-    def text(self) -> str:
-        """The run file."""
-        return draft_text(self)
 
 
 def new_run(folder: Path, logs: Sequence[Path] = (), rigs: Path | None = None) -> tuple[Path, Draft]:
@@ -98,7 +65,7 @@ def new_run(folder: Path, logs: Sequence[Path] = (), rigs: Path | None = None) -
     draft = draft_of(folder, logs, rigs)
     try:
         with target.open("x", encoding="utf-8") as stream:
-            stream.write(draft.text)
+            stream.write(draft_text(draft))
     except OSError as error:
         message = f"cannot be written: {error.strerror}"
         raise TethertestError(message, "mend the folder's permissions", path=target) from None

@@ -9,7 +9,6 @@ from typing import Final, Protocol
 from tethertest.errors import FileFormatError
 from tethertest.readers.fingerprint import unchanged
 from tethertest.readers.formats import (
-    archive,
     catman,
     delimited,
     enlight_peaks,
@@ -25,6 +24,7 @@ from tethertest.readers.formats import (
     tdms,
     toa5,
 )
+from tethertest.readers.formats.archive import ArchiveReader
 from tethertest.readers.text.document import Head, nul_bytes, read_head
 from tethertest.readers.text.encoding import detect_encoding
 from tethertest.records.channel import RawLog
@@ -45,6 +45,11 @@ class Reader(Protocol):
         ...
 
 
+def _read_member(path: Path, settings: Log | None) -> RawLog:
+    """Read what was packed in an archive."""
+    return read_log(path, settings)
+
+
 #: every reader; the generic one stands last and is asked only when no other claims the file
 READERS: Final[tuple[Reader, ...]] = (
     lvm,
@@ -60,7 +65,7 @@ READERS: Final[tuple[Reader, ...]] = (
     mdf,
     json_log,
     excel,
-    archive,
+    ArchiveReader(_read_member),
     delimited,
 )
 GENERIC: Final[Reader] = delimited

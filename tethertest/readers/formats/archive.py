@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,33 +19,53 @@ from tethertest.records.run import Log
 NAME = "archive"
 
 
-def sniff(head: Head) -> str | None:
-    """Claim zip archives that are no workbooks and do not hold one log alone, which needs no name."""
-    is_archive = head.data.startswith(ZIP_MAGIC) and not is_in(head.path)
-    return "the first bytes are a zip archive's" if is_archive else None
+class ArchiveReader:
+    """The reader of zip archives, given what reads their members: they may have any format."""
+
+    NAME = NAME
+
+    def __init__(self, read_member: Callable[[Path, Log | None], RawLog]) -> None:
+        self._read_member = read_member
+
+    def sniff(self, head: Head) -> str | None:
+        """Claim zip archives that are no workbooks and do not hold one log alone, which needs no name."""
+        is_archive = head.data.startswith(ZIP_MAGIC) and not is_in(head.path)
+        return "the first bytes are a zip archive's" if is_archive else None
+
+    def read(self, path: Path, settings: Log | None = None) -> RawLog:
+        """Read one member of a zip archive.
+
+        Parameters
+        ----------
+        path : Path
+            The archive.
+        settings : Log, optional
+            Its `table` is the member, or ``member/table`` where the member is a container itself.
+
+        Returns
+        -------
+        RawLog
+            As the member's reader returns it, with the archive's path.
+
+        Raises
+        ------
+        FileFormatError
+            No member is named or there is none of that name; the archive is damaged, encrypted, in
+            another archive, or unpacks to more than a log may hold.
+        """
+        with _named_member(path, settings) as (name, member, of_member):
+            try:
+                log = self._read_member(member, of_member)
+            except FileFormatError as error:
+                place = f"{path}:{name}"
+                raise FileFormatError(error.problem, error.remedy, path=place, line=error.line) from error
+            remarks = (f"{name!r} of the archive is read: {log.reason}", *log.remarks)
+            return replace(log, path=path, remarks=remarks)
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
-    """Read one member of a zip archive.
-
-    Parameters
-    ----------
-    path : Path
-        The archive.
-    settings : Log, optional
-        Its `table` is the member, or ``member/table`` where the member is a container itself.
-
-    Returns
-    -------
-    RawLog
-        As the member's reader returns it, with the archive's path.
-
-    Raises
-    ------
-    FileFormatError
-        No member is named or there is none of that name; the archive is damaged, encrypted, in
-        another archive, or unpacks to more than a log may hold.
-    """
+@contextmanager
+def _named_member(path: Path, settings: Log | None) -> Iterator[tuple[str, Path, Log | None]]:
+    """Unpack the member that the settings name; yield its name, where it lies and its own settings."""
     with path.open("rb") as stream:
         if stream.read(len(ZIP_MAGIC)) != ZIP_MAGIC:
             raise _nested(path)
@@ -75,24 +97,10 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
             except Exception as error:  # zipfile and zlib let errors of many kinds through
                 message = f"the compressed file is damaged or cut ({error})"
                 raise FileFormatError(message, "copy it again from the logger", path=path) from error
+            if member.read_bytes()[: len(ZIP_MAGIC)] == ZIP_MAGIC:
+                raise _nested(path)
             rest = (wanted or "")[len(name) + 1 :]
-            return _member_log(
-                path, name, member, None if settings is None else replace(settings, table=rest or None)
-            )
-
-
-def _member_log(path: Path, name: str, member: Path, settings: Log | None) -> RawLog:
-    from tethertest.readers.registry import read_log  # the member may have any format
-
-    if member.read_bytes()[: len(ZIP_MAGIC)] == ZIP_MAGIC:
-        raise _nested(path)
-    try:
-        log = read_log(member, settings)
-    except FileFormatError as error:
-        place = f"{path}:{name}"
-        raise FileFormatError(error.problem, error.remedy, path=place, line=error.line) from error
-    remarks = (f"{name!r} of the archive is read: {log.reason}", *log.remarks)
-    return replace(log, path=path, remarks=remarks)
+            yield name, member, None if settings is None else replace(settings, table=rest or None)
 
 
 def _nested(path: Path) -> FileFormatError:

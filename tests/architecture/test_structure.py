@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import sys
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -23,6 +26,26 @@ def test_no_file_is_longer_than_four_hundred_lines(path: Path) -> None:
 def test_median_file_stays_small() -> None:
     lengths = sorted(len(path.read_text(encoding="utf-8").splitlines()) for path in SOURCES)
     assert lengths[len(lengths) // 2] <= 160
+
+
+def _imported(path: Path, modules: set[str]) -> Iterator[str]:
+    """Yield the package's modules that a file imports anywhere, functions and type checking included."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for name in (f"{node.module}.{alias.name}" for alias in node.names):
+                yield name if name in modules else node.module
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+
+
+def test_no_modules_import_one_another_in_a_circle() -> None:
+    files = {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path
+        for path in (ROOT / "tethertest").rglob("*.py")
+    }
+    imports = {name: set(_imported(path, set(files))) & set(files) for name, path in files.items()}
+    assert "tethertest.records.channel" in imports["tethertest.readers.registry"]
+    assert len(list(TopologicalSorter(imports).static_order())) == len(files)  # a circle is an error
 
 
 def test_the_pipeline_never_opens_the_truth() -> None:

@@ -12,6 +12,7 @@ import typer
 
 from tethertest.cli.analyze import analyze
 from tethertest.cli.bench import bench
+from tethertest.cli.exit_codes import BAD_INPUT, INTERRUPTED, PROGRAM_FAULT
 from tethertest.cli.export import export
 from tethertest.cli.ingest import ingest
 from tethertest.cli.inspect import inspect
@@ -23,9 +24,6 @@ from tethertest.cli.solve import solve
 from tethertest.cli.terminal import printable
 from tethertest.cli.version import show_version
 from tethertest.errors import TethertestError
-
-BAD_INPUT = 2
-PROGRAM_FAULT = 3
 
 app = typer.Typer(
     rich_markup_mode=None,  # help texts speak of [[log]] and units in brackets
@@ -51,7 +49,7 @@ def main() -> None:
         sys.stderr.write(f"error: {printable(str(error))}\n")
         raise SystemExit(BAD_INPUT) from None
     except (KeyboardInterrupt, BrokenPipeError):
-        raise SystemExit(130) from None
+        raise SystemExit(INTERRUPTED) from None
     except Exception:
         import traceback
 

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from tethertest.cli.exit_codes import BAD_INPUT
+
 
 def inspect(
     path: Annotated[list[Path], typer.Argument(help="Logs, run folders or run stores.")],
@@ -37,6 +39,4 @@ def inspect(
         for log in found.get("logs", [found]):
             print_log(log)
     if refused:
-        from tethertest.cli import BAD_INPUT
-
         raise typer.Exit(BAD_INPUT)

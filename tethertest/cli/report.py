@@ -8,7 +8,9 @@ from typing import Annotated
 
 import typer
 
-EXIT_CODES = {"pass": 0, "fail": 1, "undecided": 4}
+from tethertest.cli.exit_codes import FAILED, PASSED, UNDECIDED
+
+EXIT_CODES = {"pass": PASSED, "fail": FAILED, "undecided": UNDECIDED}
 
 
 def report(

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tethertest.cli.exit_codes import UNDECIDED
+
 if TYPE_CHECKING:
     from tethertest.pipeline.solve_summary import SolveSummary
 
 #: meshes worth asking for
 FEWEST_CELLS, MOST_CELLS = 2, 20_000
-#: exit code of a solve without an answer
-UNDECIDED = 4
 
 
 class FidelityChoice(StrEnum):

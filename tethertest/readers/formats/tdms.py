@@ -16,7 +16,8 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, with_units
-from tethertest.readers.formats.tdms_channels import Key, Plan, planned
+from tethertest.readers.formats.tdms_channels import Plan, planned
+from tethertest.readers.formats.tdms_time import Key, Piece
 from tethertest.readers.text.document import Head, opened
 from tethertest.readers.text.stamps import time_zone_of
 from tethertest.readers.text.textlog import Progress
@@ -62,14 +63,14 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         for key, values in _chunks(path, file, plan):
             arrays[key][filled[key] : filled[key] + len(values)] = values
             filled[key] += len(values)
-        times: dict[tuple[float, float, int], FloatArray] = {}
+        times: dict[tuple[tuple[Piece, ...], int], FloatArray] = {}
         channels = []
         for source in plan.sources:
             values = frozen(arrays[source.key])
             if source.clock is not None:
                 time = frozen(arrays[source.clock])
             else:  # channels of one clock share the array
-                clock = (source.offset, source.increment, len(values))
+                clock = (source.pieces, len(values))
                 if clock not in times:
                     times[clock] = frozen(source.time(0, len(values)))
                 time = times[clock]
@@ -146,8 +147,8 @@ def _chunks(path: Path, file: Any, plan: Plan) -> Iterator[tuple[Key, FloatArray
                     key = (group.name, channel.name)
                     if key in plan.lengths and len(channel):
                         values = channel[:]
-                        if key in plan.origins:
-                            values = (values - plan.origins[key]) / np.timedelta64(1, "s")
+                        if key in plan.clocks:
+                            values = plan.clocks[key].seconds(values)
                         parts.append((key, np.asarray(values, dtype=np.float64)))
         except Exception as error:  # npTDMS lets errors of struct and of its own parser through
             raise _damaged(path, error) from error
@@ -169,8 +170,9 @@ def _log(path: Path, plan: Plan, channels: Iterable[RawChannel], settings: Log |
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
     """Open the file with its lists read and its samples left where they are."""
-    from nptdms import TdmsFile
     from nptdms.log import log_manager
+
+    from tethertest.readers.formats.tdms_history import FileWithHistory
 
     # what npTDMS would print about a cut file is in our own message
     log_manager.set_level(logging.CRITICAL)
@@ -181,7 +183,7 @@ def _opened(path: Path) -> Iterator[Any]:
             unpacked.seek(0)
             seekable = unpacked
         try:
-            file = TdmsFile.open(seekable)
+            file = FileWithHistory(seekable, read_metadata_only=True, keep_open=True)
         except Exception as error:  # npTDMS lets errors of struct and of its own parser through
             raise _damaged(path, error) from error
         status = file.file_status

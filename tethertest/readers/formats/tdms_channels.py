@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import unique_names
+from tethertest.readers.formats.tdms_recordings import Recording, recordings
+from tethertest.readers.formats.tdms_time import (
+    Clock,
+    Key,
+    Piece,
+    abscissa,
+    clock_of,
+    piecewise,
+    time_channel,
+)
 from tethertest.records.arrays import FloatArray
-
-#: sampling interval above which a property is damaged: a day [s]
-_LONGEST: Final = 86400.0
-_EPOCH = np.datetime64(0, "ns")
-Key: TypeAlias = tuple[str, str]  # group and channel
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,15 +32,11 @@ class Source:
     name: str
     unit: str
     clock: Key | None  #: channel of the group that is its time
-    offset: float  #: [s] of its first sample, without a clock
-    increment: float  #: [s]
+    pieces: tuple[Piece, ...] = ()  #: without a clock
 
     def time(self, begin: int, end: int) -> FloatArray:
-        """Return the time of some of its samples."""
-        time = np.arange(begin, end, dtype=np.float64)
-        time *= self.increment
-        time += self.offset
-        return time
+        """Return the time of some of its samples, which have no clock."""
+        return piecewise(self.pieces, begin, end)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +45,7 @@ class Plan:
 
     sources: tuple[Source, ...]
     lengths: dict[Key, int]  #: of every channel that is read
-    origins: dict[Key, np.datetime64]  #: first stamp of clocks of stamps
+    clocks: dict[Key, Clock]  #: channels that are a time
     start: np.datetime64 | None
     rate: float | None
     remarks: tuple[str, ...]
@@ -64,106 +65,119 @@ def planned(path: Path, file: Any) -> Plan:
     Raises
     ------
     FileFormatError
-        The file holds no data, or a channel has no time.
+        The file holds no data, a channel has no time, or changes its meaning.
     """
-    found = [channel for group in file.groups() for channel in group.channels()]
-    clocks = {group.name: _time_channel(group) for group in file.groups()}
-    remarks: list[str] = []
-    data = []
-    for channel in found:
-        if channel is clocks[channel.group_name]:
-            continue
-        if channel.data_type is None or not _is_numeric(channel):
-            remarks.append(f"channel {channel.name!r} holds no numbers and is left out")
-        else:
-            data.append(channel)
+    times = {group.name: time_channel(group) for group in file.groups()}
+    data, remarks = _with_numbers(file, times)
     if not any(len(channel) for channel in data):
-        message = "the log has no data: it is empty or was cut"
+        message = "; ".join(["the log has no data: it is empty or was cut", *remarks])
         raise FileFormatError(message, "copy the whole file from the logger again", path=path)
-    starts = [_start(channel, clocks[channel.group_name]) for channel in data]
-    known = [start for start in starts if start is not None]
-    first = min(known) if known else None
+    taken: dict[str, Clock] = {}
+    for group, time in times.items():
+        if time is not None:
+            recordings(path, file, time)  # one unit throughout
+            taken[group] = clock_of(path, time)
+    recorded = [recordings(path, file, channel) for channel in data]
+    instants = [clock.start for clock in taken.values()]
+    instants += [item.start for parts, channel in zip(recorded, data, strict=True)
+                 if channel.group_name not in taken for item in parts]  # fmt: skip
+    known = [instant for instant in instants if instant is not None]
+    start = min(known) if known else None
+    clocks = {
+        group: replace(clock, offset=0.0 if clock.start is None else _seconds(start, clock.start))
+        for group, clock in taken.items()
+    }
     repeated = Counter(channel.name for channel in data)
     names, renamed = unique_names(
         f"{channel.group_name}/{channel.name}" if repeated[channel.name] > 1 else channel.name
         for channel in data
     )
     sources = []
-    lengths: dict[Key, int] = {}
-    origins: dict[Key, np.datetime64] = {}
-    for channel, name, start in zip(data, names, starts, strict=True):
-        clock = clocks[channel.group_name]
-        source = _source(path, channel, clock, name, start, first)
-        sources.append(source)
-        lengths[source.key] = len(channel)
-        if source.clock is not None and clock is not None:
-            lengths[source.clock] = len(clock)
-            if clock.dtype.kind == "M" and len(clock):
-                origins[source.clock] = clock[0]
-    remarks += [f"channel {name!r} has no samples" for channel, name in zip(data, names, strict=True)
-                if not len(channel)]  # fmt: skip
-    rates = {1.0 / increment for channel in data if (increment := _increment(channel)) > 0}
+    for channel, name, parts in zip(data, names, recorded, strict=True):
+        sources.append(_source(path, channel, clocks.get(channel.group_name), times, name, parts, start))
+        if not len(channel):
+            remarks.append(f"channel {name!r} has no samples")
+        elif not sources[-1].clock and len(parts) > 1:
+            remarks.append(_appended(name, parts))
+    lengths = {source.key: len(channel) for source, channel in zip(sources, data, strict=True)}
+    lengths |= {source.clock: lengths[source.key] for source in sources if source.clock is not None}
+    rates = sorted(
+        {1.0 / piece.increment for source in sources for piece in source.pieces if piece.increment}
+    )
     if len(rates) > 1:
-        remarks.append(
-            f"the channels have {len(rates)} rates: {', '.join(f'{rate:g} Hz' for rate in sorted(rates))}"
-        )
-    rate = rates.pop() if len(rates) == 1 else None
-    return Plan(tuple(sources), lengths, origins, first, rate, (*renamed, *remarks))
+        remarks.append(f"the channels have {len(rates)} rates: {', '.join(f'{rate:g} Hz' for rate in rates)}")
+    said = (remark for clock in clocks.values() for remark in clock.remarks)
+    return Plan(
+        tuple(sources),
+        lengths,
+        {clock.key: clock for clock in clocks.values()},
+        start,
+        rates[0] if len(rates) == 1 else None,
+        (*renamed, *remarks, *said),
+    )
+
+
+def _with_numbers(file: Any, times: dict[str, Any | None]) -> tuple[list[Any], list[str]]:
+    """Return the channels of numbers over time, and a remark on each other one."""
+    data, remarks = [], []
+    for channel in (channel for group in file.groups() for channel in group.channels()):
+        if channel is times[channel.group_name]:
+            continue
+        _, other = abscissa(channel.properties)
+        if channel.data_type is None or not _is_numeric(channel):
+            remarks.append(f"channel {channel.name!r} holds no numbers and is left out")
+        elif other:
+            remarks.append(f"channel {channel.name!r} stands over {other}, not over time, and is left out")
+        else:
+            data.append(channel)
+    return data, remarks
 
 
 def _source(
-    path: Path, channel: Any, clock: Any | None, name: str, start: np.datetime64 | None,
-    first: np.datetime64 | None,
-) -> Source:  # fmt: skip
+    path: Path,
+    channel: Any,
+    clock: Clock | None,
+    times: dict[str, Any | None],
+    name: str,
+    parts: tuple[Recording, ...],
+    start: np.datetime64 | None,
+) -> Source:
     key = (channel.group_name, channel.name)
     unit = str(channel.properties.get("unit_string", "")).strip()
     if clock is not None:
-        if len(clock) != len(channel):
+        time = times[channel.group_name]
+        if len(time) != len(channel):  # type: ignore[arg-type]
             message = (
                 f"channel {channel.name!r} has {len(channel)} samples, "
-                f"its time {clock.name!r} has {len(clock)}"
+                f"its time {time.name!r} has {len(time)}"  # type: ignore[union-attr, arg-type]
             )
             raise FileFormatError(message, "export the log again", path=path)
-        return Source(key, name, unit, (clock.group_name, clock.name), 0.0, 0.0)
-    increment = _increment(channel)
-    if increment <= 0 and len(channel):
+        return Source(key, name, unit, clock.key)
+    if len(channel) and any(part.increment <= 0 for part in parts):
         message = f"channel {channel.name!r} has neither wf_increment nor a time channel"
         raise FileFormatError(message, "log it as a waveform, or export it with a time channel", path=path)
-    shift = 0.0 if start is None or first is None else float((start - first) / np.timedelta64(1, "s"))
-    offset = shift + float(channel.properties.get("wf_start_offset", 0.0))
-    return Source(key, name, unit, None, offset, increment)
+    factor, _ = abscissa(channel.properties)
+    late = factor * float(channel.properties.get("wf_start_offset", 0.0))
+    pieces: list[Piece] = []
+    for part in parts:
+        offset = late if part.start is None else late + _seconds(start, part.start)
+        if part.start is None and pieces:  # another rate, and nobody says since when
+            last = pieces[-1]
+            offset = last.offset + (part.first - last.first) * last.increment
+        pieces.append(Piece(part.first, offset, factor * part.increment))
+    return Source(key, name, unit, None, tuple(pieces))
+
+
+def _seconds(start: np.datetime64 | None, instant: np.datetime64) -> float:
+    return 0.0 if start is None else float((instant - start) / np.timedelta64(1, "s"))
+
+
+def _appended(name: str, parts: tuple[Recording, ...]) -> str:
+    begun = [f"sample {part.first + 1}" + ("" if part.start is None else f" at {str(part.start)[:23]} UTC")
+             for part in parts[1:4]]  # fmt: skip
+    more = f" and {len(parts) - 4} more" if len(parts) > 4 else ""
+    return f"channel {name!r} holds {len(parts)} recordings; others begin with {', '.join(begun)}{more}"
 
 
 def _is_numeric(channel: Any) -> bool:
     return np.issubdtype(channel.dtype, np.number) and not np.issubdtype(channel.dtype, np.complexfloating)
-
-
-def _time_channel(group: Any) -> Any | None:
-    """Return the group's channel of stamps or seconds, if its other channels are no waveforms."""
-    if any(_increment(channel) > 0 for channel in group.channels()):
-        return None
-    stamped = [channel for channel in group.channels() if channel.dtype.kind == "M"]
-    named = [
-        channel
-        for channel in group.channels()
-        if _is_numeric(channel) and channel.name.strip().lower() in {"time", "t", "timestamp", "x_value"}
-    ]
-    return next(iter([*stamped, *named]), None)
-
-
-def _increment(channel: Any) -> float:
-    increment = float(channel.properties.get("wf_increment", 0.0))
-    return increment if increment <= _LONGEST else 0.0
-
-
-def _start(channel: Any, clock: Any | None) -> np.datetime64 | None:
-    """Return the channel's first instant, UTC."""
-    if clock is not None:
-        stamped = clock.dtype.kind == "M" and len(clock) > 0
-        return clock[0].astype("datetime64[ns]") if stamped else None
-    stamp = channel.properties.get("wf_start_time")
-    if stamp is None:
-        return None
-    stamp = np.datetime64(stamp).astype("datetime64[ns]")
-    # a waveform without a clock has LabVIEW's zero, 1904
-    return stamp if stamp > _EPOCH else None

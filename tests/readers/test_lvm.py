@@ -238,3 +238,29 @@ def test_numbers_of_the_header_that_are_none(write):
     text = (file_header() + segment()).replace("Samples\t4", "Samples\tnan")
     with pytest.raises(FileFormatError, match="found 'nan' in the header of a segment"):
         read_log(write(text))
+
+
+def test_segments_in_other_units_are_refused(write):
+    text = file_header() + segment() + "\n" + segment(clock="14:30:00.5").replace("mV/V", "V/V")
+    with pytest.raises(FileFormatError, match="segment 2 has 'F_top' in V/V, the first one in mV/V"):
+        read_log(write(text))
+
+
+@pytest.mark.parametrize(
+    ("label", "found"), [("X_Dimension\tFrequency\tFrequency", "Frequency"), ("X_Unit_Label\tms\tms", "ms")]
+)
+def test_what_does_not_stand_over_seconds_is_refused(write, label, found):
+    text = file_header() + segment().replace("X_Dimension\tTime\tTime", label)
+    with pytest.raises(FileFormatError, match=rf"stands over .*{found}.*, expected Time in seconds"):
+        read_log(write(text))
+
+
+def test_x_since_1904_counts_from_its_first_value(write):
+    since = 3871437600.0
+    text = file_header("One") + segment("One", start=since)
+    text += "\n" + segment("One", start=since + 600.0, clock="14:30:00.5")
+    log = read_log(write(text))
+    expected = np.concatenate((np.arange(4) * 0.25, 600.0 + np.arange(4) * 0.25))
+    np.testing.assert_allclose(log.channels[0].time, expected, atol=1e-6)
+    assert log.start == dt.datetime(2026, 9, 5, 14, 20, 0, 500000)
+    assert any("since 1904" in remark for remark in log.remarks)

@@ -28,6 +28,8 @@ NAME = "lvm"
 _UNEVEN: Final = 0.2
 #: X values are seconds, from the start or since 1904
 _LATEST: Final = 1e11
+#: X values above this count from 1904, not from the segment's start [s]
+_ABSOLUTE: Final = 1e9
 #: share by which even steps may differ from Delta_X: both are rounded as they are written
 _OTHER: Final = 0.01
 _SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";"}
@@ -71,12 +73,13 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     if not header.get("Decimal_Separator") and (settings is None or settings.decimal is None):
         sign = {".": "point", ",": "comma"}[decimal]
         notes.append(f"the header states no Decimal_Separator; the numbers have a decimal {sign}")
-    start, date_order = None, ""
+    start, date_order, zero = None, "", None
     pieces: dict[int, list[tuple[FloatArray, FloatArray]]] = {column: [] for column in range(len(names))}
     for number, segment in enumerate(segments, start=1):
         if segment.names != first.names:
             message = f"segment {number} has the channels {segment.names}, the first one has {first.names}"
             raise FileFormatError(message, "split the log at this line", path=path, line=segment.names_line)
+        _refuse_other_units(path, number, segment, first)
         starts = [_start(path, segment, channel, order, zone) for channel in range(len(names))]
         if start is None and starts[0] is not None:
             start, date_order = starts[0]
@@ -85,7 +88,14 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         for channel, (time, values) in enumerate(columns):
             began = starts[channel]
             shift = (began[0] - start).total_seconds() if began is not None and start is not None else 0.0
+            if time.size and time[0] > _ABSOLUTE:
+                zero = float(time[0]) if zero is None else zero
+                shift = -zero
             pieces[channel].append((time + shift, values))
+    if zero is not None:
+        notes.append(
+            "X counts seconds since 1904: the time counts from its first value, which resolves 0.5 us"
+        )
     if len(segments) > 1:
         notes.append(
             f"the file holds {len(segments)} segments, each with its own start; between them is a gap"
@@ -111,6 +121,15 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         rate=1.0 / interval if interval > 0 else None,
         remarks=tuple(notes),
     )
+
+
+def _refuse_other_units(path: Path, number: int, segment: Segment, first: Segment) -> None:
+    for name, unit, before in zip(segment.names, segment.units, first.units, strict=True):
+        if unit != before:
+            message = (
+                f"segment {number} has {name!r} in {unit or 'no unit'}, the first one in {before or 'none'}"
+            )
+            raise FileFormatError(message, "split the log at this line", path=path, line=segment.names_line)
 
 
 def _file_header(document: Document, settings: Log | None) -> tuple[dict[str, str], str, str]:

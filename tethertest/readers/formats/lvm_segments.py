@@ -14,6 +14,8 @@ from tethertest.records.arrays import FloatArray
 XColumns: TypeAlias = Literal["no", "one", "multi"]
 #: seconds and numbers of samples in a header stay far below
 _LARGEST: Final = 1e15
+#: units of X that are seconds, where one is stated
+_SECONDS: Final = frozenset(["", "s", "sec", "second", "seconds"])
 _END = "***End_of_Header***"
 
 
@@ -116,6 +118,7 @@ def _segment(
         key: _numbers(document, keys.get(key, []), count, step, names_line)
         for key in ("X0", "Delta_X", "Samples")
     }
+    _refuse_other_abscissa(document, keys, count, step, names_line)
     dates, times = (_spread(keys.get(key, []), count, step) for key in ("Date", "Time"))
     return Segment(
         names=names,
@@ -134,6 +137,16 @@ def _segment(
         first_line=names_line + 1,
         rows=document.body[first_byte:end],
     )
+
+
+def _refuse_other_abscissa(
+    document: Document, keys: dict[str, list[str]], count: int, step: int, line: int
+) -> None:
+    dimensions, units = (_spread(keys.get(key, []), count, step) for key in ("X_Dimension", "X_Unit_Label"))
+    for dimension, unit in zip(dimensions, units, strict=True):
+        if dimension.lower() not in {"", "time"} or unit.lower() not in _SECONDS:
+            message = f"the segment stands over {dimension or 'X'} [{unit or '?'}], expected Time in seconds"
+            raise FileFormatError(message, "export the samples in time", path=document.path, line=line)
 
 
 def _spread(cells: list[str], count: int, step: int) -> list[str]:

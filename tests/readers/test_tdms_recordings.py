@@ -71,6 +71,21 @@ def test_segments_that_go_on_or_say_the_same_are_one_recording(write, next_start
     assert log.rate == 100.0
 
 
+@pytest.mark.parametrize("pause", [0.0, 30.0])
+def test_segments_stamped_by_the_computers_clock_are_even(write, pause):
+    random = np.random.default_rng(0)
+    segments = [
+        (100, later(number + random.normal(0.0, 0.03) + (pause if number >= 40 else 0.0)))
+        for number in range(60)
+    ]
+    segments[0] = (100, OWN)
+    log = read_log(write(recorded(*segments)))
+    steps = np.diff(time_of(log))
+    assert np.count_nonzero(np.abs(steps - 0.01) > 1e-9) == (1 if pause else 0)
+    assert abs(float(np.max(steps)) - 0.01 - pause) < 0.2
+    assert any("computer's clock" in remark for remark in log.remarks)
+
+
 def test_what_is_said_after_the_samples_holds_for_all_of_them(write):
     bare = {"wf_increment": 0.01}
     log = read_log(

@@ -75,9 +75,9 @@ def planned(path: Path, file: Any) -> Plan:
     taken: dict[str, Clock] = {}
     for group, time in times.items():
         if time is not None:
-            recordings(path, file, time)  # one unit throughout
+            recordings(path, file, time)  # it has one unit throughout
             taken[group] = clock_of(path, time)
-    recorded = [recordings(path, file, channel) for channel in data]
+    recorded, doubts = zip(*(recordings(path, file, channel) for channel in data), strict=True)
     instants = [clock.start for clock in taken.values()]
     instants += [item.start for parts, channel in zip(recorded, data, strict=True)
                  if channel.group_name not in taken for item in parts]  # fmt: skip
@@ -113,7 +113,7 @@ def planned(path: Path, file: Any) -> Plan:
         {clock.key: clock for clock in clocks.values()},
         start,
         rates[0] if len(rates) == 1 else None,
-        (*renamed, *remarks, *said),
+        (*renamed, *remarks, *filter(None, doubts), *said),
     )
 
 

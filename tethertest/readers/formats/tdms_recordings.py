@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,6 +16,8 @@ _EPOCH: Final = np.datetime64(0, "ns")
 _LONGEST: Final = 86400.0
 #: a recording that begins within this part of a sampling interval of where the last one ended goes on
 _GOES_ON: Final = 0.5
+#: segments that scatter by the computer's clock are as many at least, and this often the median jump at most
+_FEWEST_STAMPS, _SCATTER = 4, 5.0
 #: properties that say when a channel was recorded
 TIME: Final = ("wf_start_time", "wf_increment", "wf_start_offset", "wf_xname", "wf_xunit_string")
 #: beginnings of properties that say what its numbers are: one channel has one of each
@@ -30,8 +33,8 @@ class Recording:
     increment: float  #: [s], 0 where there is none
 
 
-def recordings(path: Path, file: Any, channel: Any) -> tuple[Recording, ...]:
-    """Return the recordings that a channel consists of; one, if the file says nothing else.
+def recordings(path: Path, file: Any, channel: Any) -> tuple[tuple[Recording, ...], str]:
+    """Return the recordings that a channel consists of, and a remark where their starts are uncertain.
 
     Parameters
     ----------
@@ -49,20 +52,15 @@ def recordings(path: Path, file: Any, channel: Any) -> tuple[Recording, ...]:
     """
     said = [(first, known) for first, known in file.history.get(channel.path, ()) if first < len(channel)]
     if len(said) < 2:
-        return (_recording(0, channel.properties),)
+        return (_recording(0, channel.properties),), ""
     (_, before), *later = said
     for first, known in later:
         _refuse_other_meaning(path, channel.name, first, before, known)
-    found: list[Recording] = []
-    for first, known in said:
-        item = _recording(first, known)
-        if found and _goes_on(found[-1], item):
-            continue
-        found.append(item)
+    found, remark = _apart(channel.name, [_recording(first, known) for first, known in said])
     if len({item.start is None for item in found}) > 1:
         message = f"channel {channel.name!r} has {len(found)} recordings, and not all say when they began"
         raise FileFormatError(message, "save each recording in a file of its own", path=path)
-    return tuple(found)
+    return tuple(found), remark
 
 
 def _recording(first: int, properties: Any) -> Recording:
@@ -76,14 +74,37 @@ def _recording(first: int, properties: Any) -> Recording:
     return Recording(first, known, increment if increment <= _LONGEST else 0.0)
 
 
-def _goes_on(earlier: Recording, later: Recording) -> bool:
-    if later.increment != earlier.increment:
-        return False
-    if earlier.start is None or later.start is None:
-        return earlier.start is later.start
+def _apart(name: str, said: list[Recording]) -> tuple[list[Recording], str]:
+    """Return what does not go on from what was said before it.
+
+    A loop that stamps what it reads by the computer's clock scatters about the samples' own time, and some
+    of its stamps lie before the end of what came before: a recording that was appended does not.
+    """
+    jumps = [_jump(earlier, later) for earlier, later in pairwise(said)]
+    known = [jump for jump in jumps if jump is not None]
+    is_scattered = len(known) >= _FEWEST_STAMPS and min(known) < 0.0
+    scatter = _SCATTER * float(np.median(np.abs(known))) if is_scattered else 0.0
+    found, largest = [said[0]], 0.0
+    for (earlier, later), jump in zip(pairwise(said), jumps, strict=True):
+        lasted = (later.first - earlier.first) * earlier.increment
+        if jump is None or abs(jump) > max(_GOES_ON * earlier.increment, min(scatter, lasted)):
+            found.append(later)
+        else:
+            largest = max(largest, abs(jump))
+    if largest <= _GOES_ON * said[0].increment:
+        return found, ""
+    off = f"channel {name!r}: its segments are stamped up to {1e3 * largest:.3g} ms off even samples"
+    return found, f"{off}: the stamps are of the computer's clock, and the samples are taken as even"
+
+
+def _jump(earlier: Recording, later: Recording) -> float | None:
+    """Return how much later than expected it begins [s]; None where it cannot go on."""
+    if later.increment != earlier.increment or (earlier.start is None) != (later.start is None):
+        return None
+    if earlier.start is None or later.start is None or earlier.start == later.start:
+        return 0.0
     apart = float((later.start - earlier.start) / np.timedelta64(1, "s"))
-    expected = (later.first - earlier.first) * earlier.increment
-    return later.start == earlier.start or abs(apart - expected) <= _GOES_ON * earlier.increment
+    return apart - (later.first - earlier.first) * earlier.increment
 
 
 def _refuse_other_meaning(

@@ -31,6 +31,8 @@ _LAYOUT = re.compile(rf"(?:{_DATE})?(?P<gap>[T\s,-]*)(?:{_TIME})?(?:{_ZONE})?")
 _DIGIT = re.compile(r"\d", re.ASCII)
 _CHINESE = str.maketrans({"年": "-", "月": "-", "日": " ", "\u3000": " "})
 _SECOND: Final = 1_000_000_000  #: [ns]
+#: years of two digits up to this one are hardly those of a log: such a dotted date may begin with the year
+_LONG_AGO: Final = 14
 _ORDERS: Final = {"ymd": (0, 1, 2), "dmy": (2, 1, 0), "mdy": (2, 0, 1)}  #: places of year, month, day
 
 
@@ -171,6 +173,10 @@ def split_stamps(characters: Characters, path: Path, lines: npt.NDArray[np.int64
     for layout, chosen in _by_layout(characters):
         match = _match(layout)
         part = characters[chosen]
+        if match is not None and match["first"] is None and not match["whole"] and not match["half"]:
+            raise _two_numbers(
+                part[0].tobytes().rstrip(b"\0").decode(errors="replace"), path, lines[chosen[0]]
+            )
         wrong = np.ones(len(chosen), np.bool_) if match is None else _impossible_clock(part, match)
         if match is None or np.any(wrong):
             row = int(chosen[np.argmax(wrong)])
@@ -192,6 +198,12 @@ def split_stamps(characters: Characters, path: Path, lines: npt.NDArray[np.int64
         message = "some stamps have a date and some have none"
         raise FileFormatError(message, "export the log again with full stamps", path=path, line=int(lines[0]))
     return StampParts(date, clock, zone, long_first, dated == {True}, dotted, short, zoned)
+
+
+def _two_numbers(cell: str, path: Path, line: np.int64) -> FileFormatError:
+    message = f"found {cell!r} without a date: hours and minutes, or minutes and seconds"
+    remedy = 'export the time as h:mm:ss, or write for this log in run.toml: rate = "1 Hz" or what it was'
+    return FileFormatError(message, remedy, path=path, line=int(line))
 
 
 def settle_order(blocks: Iterable[StampParts], wanted: str | None, path: Path, line: int) -> str:
@@ -222,8 +234,10 @@ def settle_order(blocks: Iterable[StampParts], wanted: str | None, path: Path, l
                 return "ymd"
             if wanted is not None:
                 return wanted
-            if parts.dotted:
+            if parts.dotted and not (parts.short and _year_may_lead(one, three)):
                 return "dmy"
+            if parts.dotted:
+                possible = {"dmy", "ymd"}
             if parts.short:
                 possible.add("ymd")
         if np.any(one > 12):
@@ -249,6 +263,11 @@ def settle_order(blocks: Iterable[StampParts], wanted: str | None, path: Path, l
     choices = [f'"{order}"' for order in ("dmy", "mdy", "ymd") if order in possible]
     remedy = f"set date_order = {' or '.join(choices)} for this log in run.toml"
     raise FileFormatError(message, remedy, path=path, line=line)
+
+
+def _year_may_lead(first: Integers, third: Integers) -> bool:
+    """Return whether dates such as 26.09.05 are rather of 2026 than of 2005."""
+    return bool(np.any((first > _LONG_AGO) & (third <= _LONG_AGO)))
 
 
 def _characters(together: str) -> Characters:

@@ -17,6 +17,13 @@ from tethertest.readers.timeunits import SECONDS, calendar_start, epoch_start, i
 from tethertest.records.run import Log
 
 _START = re.compile(r"start(?:\s*time|ed)?(?:\s+at)?\s*[:=]\s*(.+)", re.IGNORECASE)
+#: a column of fractions of a second beside stamps or seconds, such as ``ms`` or ``header.stamp.nsecs``
+_SUBSECOND = re.compile(
+    r"(?:ms|us|µs|ns|毫秒|(?:.*(?:time|stamp|date|tv)[_. ])?(?:m|u|n|milli|micro|nano)(?:s|secs?|seconds?))",
+    re.IGNORECASE,
+)
+_FRACTION = re.compile(r"[.,]\d+\D*$")
+_HALF_DAY = re.compile(r"[AP]\.?M\.?|上午|下午", re.IGNORECASE)
 #: a first column without a name is the time only if nearly all of its steps go up
 _RISING_STEPS: Final = 0.9
 #: a tick of a counter since 1970 is a nanosecond, of one in days less than a tenth of a microsecond
@@ -71,19 +78,10 @@ def find_time(layout: Layout, path: Path, settings: Log | None) -> TimeColumns:
     }
     if settings is not None and settings.time is not None:
         return _wanted(layout, path, settings.time, of_kind["time"])
-    for column in named:
-        if layout.kinds[column] == "number":
-            return TimeColumns(counter=column)
-    if of_kind["datetime"]:
-        return TimeColumns((of_kind["datetime"][0],))
-    if of_kind["date"] and of_kind["time"]:
-        return TimeColumns((of_kind["date"][0], of_kind["time"][0]))
-    if of_kind["time"]:
-        remark = "the stamps have a time of day but no date"
-        return TimeColumns((of_kind["time"][0],), remarks=(remark,))
-    for column in of_kind["number"]:
-        if layout.units[column].lower() in SECONDS:
-            return TimeColumns(counter=column)
+    chosen = _evident(layout, path, [column for column in named if layout.kinds[column] == "number"], of_kind)
+    if chosen is not None:
+        refuse_parts_elsewhere(layout, path, chosen)
+        return chosen
     wrong = next((column for column in named if layout.kinds[column] == "text"), None)
     if wrong is not None:
         raise _text_as_time(layout, path, wrong)
@@ -98,6 +96,71 @@ def find_time(layout: Layout, path: Path, settings: Log | None) -> TimeColumns:
         remark = "the first column has no name and is taken as the time in seconds"
         return TimeColumns(counter=0, remarks=(remark,))
     raise _no_time(layout, path)
+
+
+def _evident(
+    layout: Layout, path: Path, counters: list[int], of_kind: dict[str, list[int]]
+) -> TimeColumns | None:
+    """Return the time by name, stamps or unit; None where nothing of these speaks for a column."""
+    if counters:
+        _refuse_several(layout, path, counters)
+        return TimeColumns(counter=counters[0])
+    if of_kind["datetime"]:
+        _refuse_several(layout, path, of_kind["datetime"])
+        return TimeColumns((of_kind["datetime"][0],))
+    if of_kind["date"] and of_kind["time"]:
+        return TimeColumns((of_kind["date"][0], of_kind["time"][0]))
+    if of_kind["time"]:
+        remark = "the stamps have a time of day but no date"
+        return TimeColumns((of_kind["time"][0],), remarks=(remark,))
+    counters = [column for column in of_kind["number"] if layout.units[column].lower() in SECONDS]
+    if counters:
+        _refuse_several(layout, path, counters)
+        remark = f"column {layout.names[counters[0]]!r} is taken as the time by its unit"
+        return TimeColumns(counter=counters[0], remarks=(remark,))
+    return None
+
+
+def _refuse_several(layout: Layout, path: Path, columns: list[int]) -> None:
+    """Refuse to choose among columns that may each be the time, of all or of some channels."""
+    if len(columns) > 1:
+        names = [layout.names[column] for column in columns]
+        message = f"more than one column may be the time: {', '.join(map(repr, names))}"
+        lines = " or ".join(f'time = "{name}"' for name in names[:4])
+        remedy = (
+            f"write for this log in run.toml: {lines}; if each belongs to channels of its own, "
+            "export them as logs of their own"
+        )
+        raise FileFormatError(message, remedy, path=path, line=layout.header_line)
+
+
+def refuse_parts_elsewhere(layout: Layout, path: Path, chosen: TimeColumns) -> None:
+    """Refuse a time of which another column has a part: the fraction of a second, or AM and PM.
+
+    Raises
+    ------
+    FileFormatError
+        Such a column stands beside the time.
+    """
+    own = (*chosen.stamps, *(() if chosen.counter is None else (chosen.counter,)))
+    shown = " and ".join(repr(layout.names[column]) for column in own)
+    cells = [layout.first_cells[column] for column in own] + (list(layout.first_column) if 0 in own else [])
+    is_whole = not any(_FRACTION.search(cell) for cell in cells)
+    for column, (name, kind) in enumerate(zip(layout.names, layout.kinds, strict=True)):
+        if column in own:
+            continue
+        if chosen.stamps and kind == "text" and _HALF_DAY.fullmatch(layout.first_cells[column].strip()):
+            message = f"column {name!r} holds AM and PM apart from the time {shown}"
+            remedy = "export the time with them in one column, or with hours from 0 to 23"
+        elif is_whole and kind == "number" and _SUBSECOND.fullmatch(name.strip()):
+            message = f"column {name!r} looks like the fraction of a second that the time {shown} leaves out"
+            remedy = (
+                'export both as one column, or write for this log in run.toml: rate = "100 Hz" if rows are '
+                f'even in time, or time = "{layout.names[own[-1]]}" if {name!r} has nothing to do with it'
+            )
+        else:
+            continue
+        raise FileFormatError(message, remedy, path=path, line=layout.header_line)
 
 
 def _wanted(layout: Layout, path: Path, name: str, clocks: list[int]) -> TimeColumns:

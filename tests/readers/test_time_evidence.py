@@ -1,0 +1,118 @@
+"""Logs whose time stands in several columns, or can be read in two ways: never one of them in silence."""
+
+import datetime as dt
+
+import numpy as np
+import pytest
+
+from tethertest.errors import FileFormatError
+from tethertest.readers import read_log
+
+BASE = dt.datetime(2026, 9, 5, 10)
+
+
+def rows(head, row, count=60):
+    return head + "\n" + "".join(row(k) + "\n" for k in range(count))
+
+
+def second(k):
+    return BASE + dt.timedelta(seconds=k // 10)
+
+
+SEVERAL = {
+    "by unit": rows("t1 [s],F1 [N],t2 [s],F2 [N]", lambda k: f"{k / 100},{k % 7},{3 + k / 20},{k % 5}"),
+    "by unit and name": rows(
+        "Time 1 - fast [s],F1 [N],Time 2 - slow [s],F2 [N]", lambda k: f"{k / 100},{k % 7},{k / 20},{k % 5}"
+    ),
+    "by name": rows("Date,Time [s],F [N]", lambda k: f"{46270.4 + k / 1e7:.10f},{k / 100},{k % 7}"),
+    "stamps": rows(  # one a second later
+        "sent,received,F [N]", lambda k: f"{second(10 * k)},{second(10 * k + 10)},{k % 7}"
+    ),
+}  # fmt: skip
+PARTS = {
+    "milliseconds": rows(
+        "No,Date&Time,ms,F [N]", lambda k: f"{k},{second(k):%Y/%m/%d %H:%M:%S},{k % 10 * 100},{k % 7}"
+    ),
+    "nanoseconds": rows("sec,nsec,F [N]", lambda k: f"{1789000000 + k // 10},{k % 10 * 10**8},{k % 7}"),
+    "stamp": rows("time,stamp_nsecs,F [N]", lambda k: f"{1789000000 + k // 10},{k % 10 * 10**8},{k % 7}"),
+}
+
+
+@pytest.mark.parametrize("text", SEVERAL.values(), ids=SEVERAL)
+def test_two_columns_that_may_be_the_time_are_refused(write, text):
+    with pytest.raises(FileFormatError, match="more than one column may be the time"):
+        read_log(write(text))
+
+
+def test_the_run_file_chooses_among_them(write, settings):
+    log = read_log(write(SEVERAL["by unit"]), settings(time="t2"))
+    assert log.channels[0].time[0] == 3.0
+
+
+def test_a_time_that_only_its_unit_shows_is_remarked(write):
+    log = read_log(write(rows("loop [ms],F [N]", lambda k: f"{10 * k},{k % 7}")))
+    assert log.channels[0].time[1] == 0.01
+    assert "column 'loop' is taken as the time by its unit" in log.remarks
+
+
+@pytest.mark.parametrize("text", PARTS.values(), ids=PARTS)
+def test_fractions_of_a_second_in_a_column_of_their_own_are_refused(write, text):
+    with pytest.raises(FileFormatError, match="looks like the fraction of a second"):
+        read_log(write(text))
+
+
+@pytest.mark.parametrize(
+    ("head", "row"),
+    [
+        ("Time [s],ms,F [N]", lambda k: f"{k / 100},{k % 9},{k % 7}"),
+        ("Time,delay_ms,F [N]", lambda k: f"{k},{k % 9},{k % 7}"),
+        ("Time,Pos [mm],ms2 [m/s2]", lambda k: f"{k},{k % 9},{k % 7}"),
+    ],
+)
+def test_other_columns_are_no_fractions(write, head, row):
+    log = read_log(write(rows(head, row)))
+    assert len(log.channels) == 2
+
+
+def test_the_run_file_says_that_a_column_is_no_fraction(write, settings):
+    log = read_log(write(PARTS["milliseconds"]), settings(time="Date&Time"))
+    assert [channel.name for channel in log.channels] == ["No", "ms", "F"]
+
+
+@pytest.mark.parametrize("head", ["Elapsed [mm:ss]", "Time", "Zeit"])
+def test_two_numbers_of_a_clock_are_refused(write, head):
+    with pytest.raises(FileFormatError, match="hours and minutes, or minutes and seconds"):
+        read_log(write(rows(f"{head},F [N]", lambda k: f"{k // 60:02d}:{k % 60:02d},{k % 7}")))
+
+
+@pytest.mark.parametrize("form", ["%Y-%m-%d,%H:%M", "%Y-%m-%d %H:%M,1"])
+def test_hours_and_minutes_of_a_date_are_read(write, form):
+    head = "Date,Time,F [N]" if form[8] == "," else "Stamp,a,F [N]"
+    log = read_log(write(rows(head, lambda k: f"{BASE + dt.timedelta(minutes=k):{form}},{k % 7}")))
+    np.testing.assert_array_equal(np.diff(log.channels[0].time), 60.0)
+
+
+@pytest.mark.parametrize("cells", [("AM", "PM"), ("a.m.", "p.m."), ("上午", "下午")])
+def test_halves_of_the_day_in_a_column_of_their_own_are_refused(write, cells):
+    text = rows("Date,Time,half,F [N]", lambda k: f"2026-09-05,02:00:{k % 60:02d},{cells[1]},{k % 7}")
+    with pytest.raises(FileFormatError, match="holds AM and PM apart from the time"):
+        read_log(write(text))
+
+
+@pytest.mark.parametrize(
+    ("day", "order", "start"),
+    [
+        ("05.09.26", None, BASE),
+        ("26.09.05", "ymd", BASE),
+        ("26.09.05", "dmy", BASE.replace(year=2005, day=26)),
+        ("05.09.2026", None, BASE),
+    ],
+)
+def test_dotted_dates(write, settings, day, order, start):
+    text = rows("Time;F [N]", lambda k: f"{day} 10:00:{k:02d};{k % 7}")
+    assert read_log(write(text), settings(date_order=order) if order else None).start == start
+
+
+def test_a_dotted_date_that_may_begin_with_the_year_is_refused(write):
+    with pytest.raises(FileFormatError, match="can be read as day/month and as year/month/day"):
+        read_log(write(rows("Time;F [N]", lambda k: f"26.09.05 10:00:{k:02d};{k % 7}")))

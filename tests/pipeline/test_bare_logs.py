@@ -149,6 +149,14 @@ def test_a_clean_log_has_no_notes(tmp_path: Path) -> None:
     assert not analysed(log(tmp_path / "a.csv", cells(TIME, 2), F=cells(tension()))).notes
 
 
+@pytest.mark.parametrize("back", [0.3, 3.0])
+def test_a_time_that_goes_back_for_long_is_refused(tmp_path: Path, back: float) -> None:
+    time = TIME - back * TIME[-1] * (np.arange(TIME.size) >= TIME.size // 2)
+    with pytest.raises(DataError, match="samples does not go forward, first after") as caught:
+        analysed(log(tmp_path / "a.csv", cells(time, 3), F=cells(tension())))
+    assert "--set rate" in caught.value.remedy
+
+
 def test_rows_newest_first_are_refused_with_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(DataError, match="the time goes forward in 1 of 6000 rows only"):
         analysed(log(tmp_path / "a.csv", cells(TIME[::-1], 2), F=cells(tension())))

@@ -7,6 +7,7 @@ import pytest
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
+from tethertest.readers.text import textlog
 
 BASE = dt.datetime(2026, 9, 5, 10)
 
@@ -116,3 +117,42 @@ def test_dotted_dates(write, settings, day, order, start):
 def test_a_dotted_date_that_may_begin_with_the_year_is_refused(write):
     with pytest.raises(FileFormatError, match="can be read as day/month and as year/month/day"):
         read_log(write(rows("Time;F [N]", lambda k: f"26.09.05 10:00:{k:02d};{k % 7}")))
+
+
+@pytest.mark.parametrize("size", [64, 1 << 20])
+def test_times_of_day_go_on_over_midnight(write, monkeypatch, size):
+    monkeypatch.setattr(textlog, "BLOCK_BYTES", size)
+    start = dt.datetime(2026, 9, 5, 23, 59, 30)
+    text = rows("Time,F [N]", lambda k: f"{start + dt.timedelta(hours=k):%H:%M:%S.%f},{k % 7}")
+    log = read_log(write(text))
+    np.testing.assert_array_equal(log.channels[0].time, 3600.0 * np.arange(60))
+    assert any("a step back of half a day is midnight" in remark for remark in log.remarks)
+
+
+def test_a_small_step_back_is_no_midnight(write):
+    text = rows("Time,F [N]", lambda k: f"10:00:{(k if k < 30 else k - 5):02d},{k % 7}")
+    assert np.count_nonzero(np.diff(read_log(write(text)).channels[0].time) < 0) == 1
+
+
+@pytest.mark.parametrize("size", [64, 1 << 20])
+def test_comments_among_the_rows_are_remarked(write, monkeypatch, size):
+    monkeypatch.setattr(textlog, "BLOCK_BYTES", size)
+    data = [f"{k / 100},{k % 7}\n" for k in range(60)]
+    data[20] += "# gain changed\n"
+    data[40] += "# hit\n\n"
+    data[50] += "# hit\n"
+    log = read_log(write("# start: 2026-09-05 10:00:00\nTime [s],F [N]\n" + "".join(data)))
+    assert log.start == BASE
+    assert [remark for remark in log.remarks if "comment" in remark] == [
+        "comment 'gain changed' among the rows, 1 times, first in line 24",
+        "comment 'hit' among the rows, 2 times, first in line 45",
+    ]
+
+
+@pytest.mark.parametrize("first", ["", "# start: 2026-09-05 10:00:00\n"])
+def test_a_start_among_the_rows_is_refused(write, first):
+    data = "".join(f"{k / 100},{k % 7}\n" for k in range(60))
+    text = f"{first}Time [s],F [N]\n{data}# start: 2026-09-05 11:00:00\n{data}"
+    with pytest.raises(FileFormatError, match="among the rows begins a second recording") as caught:
+        read_log(write(text))
+    assert caught.value.line == 62 + bool(first)

@@ -26,6 +26,9 @@ HELD_EVEN: Final = 0.8
 _SHOWN_NAMES: Final = tuple((flag.name or "").lower() for flag in SHOWN)
 #: a record of fewer samples has nothing to analyse
 FEWEST_SAMPLES: Final = 16
+#: a log is not used whose time goes back, or does not go on, for more than these shares of its samples
+MOST_BACKWARD: Final = 0.05
+MOST_REPEATED: Final = 0.5
 #: spacing that varies more than this, relative, between the tenth and the ninetieth per cent is remarked on
 JITTER: Final = 0.05
 
@@ -61,7 +64,7 @@ def bare_channels(
             message = f"there is no channel {name!r}; the log has {', '.join(known)}"
             raise DataError(message, "give --channel one of these names", path=path)
     channels: list[Channel] = []
-    remarks = list(log.remarks)
+    remarks, remedies = list(log.remarks), []
     for name in names or known:
         try:
             channel, said = si_channel(known[name], log)
@@ -69,22 +72,42 @@ def bare_channels(
             if used < FEWEST_SAMPLES <= rows:
                 message = f"channel {name!r}: the time goes forward in {used} of {rows} rows only"
                 raise DataError(message, "export the log again sorted by time, the oldest row first")
+            _refuse_backward(known[name])
             check_usable(channel)
         except DataError as error:
             if names:
                 raise error.located(path) from error
             remarks.append(f"left out: {error.problem}")
+            remedies.append(error.remedy)
             continue
         channels.append(channel)
         remarks += said
     if not channels:
         message = f"none of its {len(known)} channels can be analysed: {'; '.join(remarks) or 'it has none'}"
-        raise DataError(message, "export the log again, with numbers in its columns", path=path)
+        remedy = (*remedies, "export the log again, with numbers in its columns")[0]
+        raise DataError(message, remedy, path=path)
     flagged, said = with_shown_flags(channels)
     remarks += said + [text for channel in flagged if (text := _left_out(channel))]
     # noise is that of the samples that are used
     quiet = [replace(channel, noise=white_noise(channel.values[channel.usable])) for channel in flagged]
     return tuple(quiet), tuple(remarks)
+
+
+def _refuse_backward(raw: RawChannel) -> None:
+    """Refuse a channel whose time goes back or stands still so often that the rest is not the record."""
+    time = raw.time[np.isfinite(raw.time)]
+    if time.size < FEWEST_SAMPLES:
+        return
+    latest = np.maximum.accumulate(time)[:-1]
+    back, held = (int(np.count_nonzero(told)) for told in (time[1:] < latest, time[1:] <= latest))
+    if back > MOST_BACKWARD * time.size or held > MOST_REPEATED * time.size:
+        first = float(latest[np.argmax(time[1:] <= latest)])
+        message = (
+            f"channel {raw.name!r}: the time of {held} of {time.size} samples does not go forward, "
+            f"first after {first:.6g} s"
+        )
+        remedy = 'export each recording by itself and with its full time, or give --set rate="100 Hz"'
+        raise DataError(message, remedy)
 
 
 def _left_out(channel: Channel) -> str:

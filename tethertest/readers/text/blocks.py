@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 from decimal import Decimal
+from itertools import islice
 from pathlib import Path
 from typing import Final, TypeAlias, TypeVar
 
@@ -38,6 +40,10 @@ _MANY: Final = 64
 #: words for numbers beyond all bounds
 _INFINITE: Final = frozenset(["inf", "+inf", "-inf", "infinity", "+infinity", "-infinity"])
 _LARGEST_TICK: Final = 2**63 - 1
+#: a row that begins with # is a comment
+_COMMENT: Final = re.compile(rb"^#+[ \t]*([^\n]*)", re.MULTILINE)
+#: comments of a block that are kept, and their characters
+_COMMENTS, _COMMENT_SHOWN = 10_000, 60
 _Key = TypeVar("_Key")
 
 
@@ -67,6 +73,7 @@ class Parsed:
     line_count: int  #: lines of the block
     words: dict[tuple[int, str], list[int]] = field(default_factory=dict)  #: column, word -> rows
     infinite: dict[int, list[int]] = field(default_factory=dict)  #: column -> rows
+    comments: tuple[tuple[int, str], ...] = ()  #: line, from 0 at the start of the block, and text
     problem: FileFormatError | None = None  #: first mistake; its line counts from 1 in the block
 
 
@@ -126,8 +133,21 @@ def parse_block(block: TextBlock, plan: RowPlan) -> Parsed:
         rows = int(np.searchsorted(lines[:rows], problem.line - 1))
     return Parsed(
         numbers[:, :rows], ticks[:rows], stamps[:, :rows], lines[:rows], capacity,
-        _before(rows, parsed.words), _before(rows, parsed.infinite), problem,
+        _before(rows, parsed.words), _before(rows, parsed.infinite),
+        _comments(block) if rows < capacity else (), problem,
     )  # fmt: skip
+
+
+def _comments(block: TextBlock) -> tuple[tuple[int, str], ...]:
+    """Return the comments of a block with their lines."""
+    text = bytes(block.text[: block.size])
+    found = list(islice(_COMMENT.finditer(text), _COMMENTS))
+    if not found:
+        return ()
+    line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord("\n"))
+    lines = np.searchsorted(line_ends, [match.start() for match in found])
+    shown = (match[1].decode(errors="replace").strip()[:_COMMENT_SHOWN] for match in found)
+    return tuple((line, text) for line, text in zip(lines.tolist(), shown, strict=True) if text)
 
 
 def _before(end: int, where: dict[_Key, list[int]]) -> dict[_Key, list[int]]:

@@ -119,7 +119,7 @@ def find_layout(source: TextSource, settings: Log | None) -> Layout:
         column_kind([line.cells[column] for line in data[:200] if column < len(line.cells)])
         for column in range(len(names))
     )
-    texts = tuple(text for _, text in comments)
+    texts = tuple(text for number, text in comments if number < lines[first].number)
     return Layout(
         separator, decimal, header_line, lines[first].number, len(names), names, units, kinds, texts,
         numbered=numbered,

@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tethertest.readers.text.blocks import Integers
 from tethertest.records.arrays import FloatArray
+
+#: comments among the rows that are remembered, and those that are remarked one by one
+_COMMENTS, _SHOWN = 1000, 5
+
+
+@dataclass(frozen=True, slots=True)
+class Comment:
+    """A comment among the rows."""
+
+    row: int  #: that it stands above, in its block
+    line: int  #: in the file, from 1
+    text: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,6 +32,7 @@ class RowBlock:
     lines: Integers  #: (n,) line of each row in the file, from 1
     words: dict[tuple[int, str], Integers]  #: column, word for missing -> rows
     infinite: dict[int, Integers]  #: column -> rows
+    comments: tuple[Comment, ...]  #: those that stand above a row
     encoding: str  #: of the file, as far as it was read
 
     def part(self, begin: int, end: int) -> RowBlock:
@@ -30,6 +43,7 @@ class RowBlock:
             self.lines[begin:end],
             {key: found for key, rows in self.words.items() if len(found := _within(rows, begin, end))},
             {key: found for key, rows in self.infinite.items() if len(found := _within(rows, begin, end))},
+            tuple(replace(item, row=item.row - begin) for item in self.comments if begin <= item.row < end),
             self.encoding,
         )
 
@@ -58,12 +72,14 @@ def regrouped(blocks: Iterator[RowBlock], rows: int) -> Iterator[RowBlock]:
 def _joined(blocks: Sequence[RowBlock]) -> RowBlock:
     words: dict[tuple[int, str], list[Integers]] = {}
     infinite: dict[int, list[Integers]] = {}
+    comments: list[Comment] = []
     before = 0
     for block in blocks:
         for key, rows in block.words.items():
             words.setdefault(key, []).append(rows + before)
         for column, rows in block.infinite.items():
             infinite.setdefault(column, []).append(rows + before)
+        comments += [replace(item, row=item.row + before) for item in block.comments]
         before += len(block.time)
     return RowBlock(
         np.concatenate([block.time for block in blocks]),
@@ -71,17 +87,19 @@ def _joined(blocks: Sequence[RowBlock]) -> RowBlock:
         np.concatenate([block.lines for block in blocks]),
         {key: np.concatenate(parts) for key, parts in words.items()},
         {column: np.concatenate(parts) for column, parts in infinite.items()},
+        tuple(comments),
         blocks[-1].encoding,
     )
 
 
 class Tally:
-    """Words for missing and infinite values of a log, counted as its rows go by."""
+    """Words for missing, infinite values and comments of a log, counted as its rows go by."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self._names = names
         self._words: dict[tuple[int, str], tuple[int, int]] = {}  # count, first line
         self._infinite: dict[int, int] = {}
+        self._comments: dict[str, tuple[int, int]] = {}  # count, first line
 
     def add(self, block: RowBlock) -> None:
         """Count those of further rows."""
@@ -90,6 +108,10 @@ class Tally:
             self._words[key] = count + len(rows), first
         for column, rows in block.infinite.items():
             self._infinite[column] = self._infinite.get(column, 0) + len(rows)
+        for item in block.comments:
+            count, first = self._comments.get(item.text, (0, item.line))
+            if count or len(self._comments) < _COMMENTS:
+                self._comments[item.text] = count + 1, first
 
     def remarks(self) -> tuple[str, ...]:
         """Return a remark on each, by column."""
@@ -102,7 +124,13 @@ class Tally:
             (column, f"column {self._names[column]!r}: {count} infinite values read as missing")
             for column, count in self._infinite.items()
         ]
-        return tuple(text for _, text in sorted(found, key=lambda item: item[0]))
+        among = [
+            f"comment {text!r} among the rows, {count} times, first in line {first}"
+            for text, (count, first) in self._comments.items()
+        ]
+        if len(among) > _SHOWN:
+            among = [*among[:_SHOWN], f"{len(among) - _SHOWN} further comments among the rows"]
+        return (*(text for _, text in sorted(found, key=lambda item: item[0])), *among)
 
 
 class Growing:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass, replace
@@ -17,12 +17,12 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.channels import unique_names
 from tethertest.readers.text.blocks import Integers, Parsed, RowPlan, parse_block
 from tethertest.readers.text.layout import Layout, find_layout
-from tethertest.readers.text.rows import RowBlock
+from tethertest.readers.text.rows import Comment, RowBlock
 from tethertest.readers.text.stamps import time_zone_of
 from tethertest.readers.text.table import SPACES
 from tethertest.readers.text.textlog import Progress, TextBlock, TextLog, open_text
-from tethertest.readers.text.timeaxis import columns_named_time, find_time, read_counter
-from tethertest.readers.text.timescale import TimeScale, settle_scale
+from tethertest.readers.text.timeaxis import STATED_START, columns_named_time, find_time, read_counter
+from tethertest.readers.text.timescale import Midnights, TimeScale, settle_scale
 from tethertest.records.run import Log
 
 #: threads that parse; more wait for the one that reads
@@ -52,21 +52,41 @@ class TableLog:
             A row is cut or ragged, has no time, or a cell is no number.
         """
         places = [self.plan.numbers.index(column) for column in self.channels]
-        row = 0
+        row, midnights = 0, Midnights()
+        open_comments: list[tuple[int, str]] = []
         for parsed, lines, encoding in _parsed(self.text, self.layout, self.plan, progress):
+            open_comments += parsed.comments
             if len(lines):
                 time = self.scale.seconds(parsed, lines, row)
+                if self.scale.dateless:
+                    time = midnights.passed(time)
                 row += len(lines)
+                comments = tuple(
+                    Comment(int(np.searchsorted(lines, line)), line, said)
+                    for line, said in open_comments
+                    if line < lines[-1]
+                )
+                open_comments = open_comments[len(comments) :]
+                self._refuse_second_start(comments)
                 yield RowBlock(
                     time,
                     tuple(parsed.numbers[place] for place in places),
                     lines,
                     {key: np.sort(rows) for key, rows in parsed.words.items()},
                     {column: np.sort(rows) for column, rows in parsed.infinite.items()},
+                    comments,
                     encoding,
                 )
             if parsed.problem is not None:
                 raise parsed.problem
+
+    def _refuse_second_start(self, comments: Sequence[Comment]) -> None:
+        """Refuse a comment among the rows that states when a recording began."""
+        for item in comments:
+            if STATED_START.fullmatch(item.text):
+                message = f"the comment {item.text!r} among the rows begins a second recording"
+                remedy = "save each recording in a file of its own"
+                raise FileFormatError(message, remedy, path=self.text.path, line=item.line)
 
 
 def open_table(path: Path, settings: Log | None) -> TableLog:
@@ -193,7 +213,8 @@ def _parsed(
                 error = FileFormatError(problem.problem, problem.remedy, path=problem.path, line=place)
                 yield replace(parsed, problem=error), parsed.lines + line, encoding
                 return
-            yield parsed, parsed.lines + line, encoding
+            at = tuple((line + place, said) for place, said in parsed.comments)
+            yield replace(parsed, comments=at), parsed.lines + line, encoding
             line += parsed.line_count
     finally:
         # Without a wait: a log dropped half read is ended by the garbage collector, which may run within

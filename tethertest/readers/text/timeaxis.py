@@ -16,7 +16,8 @@ from tethertest.readers.text.stamps import parse_stamps
 from tethertest.readers.timeunits import SECONDS, calendar_start, epoch_start, is_time_name, unit_in_name
 from tethertest.records.run import Log
 
-_START = re.compile(r"start(?:\s*time|ed)?(?:\s+at)?\s*[:=]\s*(.+)", re.IGNORECASE)
+#: a comment that states when the recording began
+STATED_START = re.compile(r"start(?:\s*time|ed)?(?:\s+at)?\s*[:=]\s*(.+)", re.IGNORECASE)
 #: a column of fractions of a second beside stamps or seconds, such as ``ms`` or ``header.stamp.nsecs``
 _SUBSECOND = re.compile(
     r"(?:ms|us|µs|ns|毫秒|(?:.*(?:time|stamp|date|tv)[_. ])?(?:m|u|n|milli|micro|nano)(?:s|secs?|seconds?))",
@@ -111,7 +112,7 @@ def _evident(
     if of_kind["date"] and of_kind["time"]:
         return TimeColumns((of_kind["date"][0], of_kind["time"][0]))
     if of_kind["time"]:
-        remark = "the stamps have a time of day but no date"
+        remark = "the stamps have a time of day but no date; a step back of half a day is midnight"
         return TimeColumns((of_kind["time"][0],), remarks=(remark,))
     counters = [column for column in of_kind["number"] if layout.units[column].lower() in SECONDS]
     if counters:
@@ -265,7 +266,7 @@ def _start_from_comments(
     path: Path, layout: Layout, order: str | None, zone: dt.tzinfo | None
 ) -> tuple[dt.datetime | None, str]:
     for text in layout.comments:
-        match = _START.fullmatch(text)
+        match = STATED_START.fullmatch(text)
         if match:
             stamps = parse_stamps([match[1]], path, [1], order)
             return stamps.start(zone), stamps.date_order

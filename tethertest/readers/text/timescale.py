@@ -6,6 +6,7 @@ import datetime as dt
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,8 @@ from tethertest.readers.text.blocks import Characters, Integers, Parsed
 from tethertest.readers.text.stamps import StampParts, Stamps, settle_order, split_stamps
 from tethertest.readers.text.timeaxis import Counter, TimeColumns
 from tethertest.records.arrays import FloatArray
+
+_HALF_DAY: Final = 43_200.0  #: [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +33,11 @@ class TimeScale:
     date_order: str
     long_first: bool  #: the dates begin with a year of four digits
     remarks: tuple[str, ...]
+
+    @property
+    def dateless(self) -> bool:
+        """Whether the time is a time of day."""
+        return self.chosen.rate is None and self.counter is None and not self.date_order
 
     def seconds(self, parsed: Parsed, lines: Integers, row: int) -> FloatArray:
         """Return the time of the rows of a block.
@@ -80,6 +88,22 @@ class TimeScale:
             line = int(lines[np.argmax(mixed)])
             raise FileFormatError(message, "export the log again with full stamps", path=self.path, line=line)
         return parts.nanoseconds(self.date_order, self.path, lines)
+
+
+class Midnights:
+    """Times of day without a date, told on over midnight."""
+
+    def __init__(self) -> None:
+        self._last: float | None = None
+        self._days = 0
+
+    def passed(self, time: FloatArray) -> FloatArray:
+        """Return the next times with a day added at every step back of more than half a day."""
+        before = time[0] if self._last is None else self._last
+        back = np.diff(time, prepend=before) < -_HALF_DAY
+        days = self._days + np.cumsum(back)
+        self._last, self._days = float(time[-1]), int(days[-1])
+        return np.asarray(time + 2.0 * _HALF_DAY * days, dtype=np.float64)
 
 
 def stamp_parts(stamps: Characters, path: Path, lines: Integers) -> StampParts:

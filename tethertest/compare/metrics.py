@@ -22,6 +22,8 @@ ORDERS: Final = ("1", "2", "3")
 PHASE_ORDERS: Final = ("1",)
 #: relative uncertainty of the noise variance that is taken off the measured energy: noise is not quite white
 NOISE_UNCERTAINTY: Final = 0.2
+#: an order of the replay below this many standard errors of the measured one is absent on both sides
+ABSENT: Final = 0.1
 
 
 def peak_metric(subject: Subject) -> Metric:
@@ -188,6 +190,11 @@ def _amplitude_metric(
             f"order {order} is not significant in the measurement (below {measured.interval[1]:.2g}), and "
             f"the replay's {replayed.amplitude:.2g} agrees with that; a relative error has no meaning"
         )
+        if limit is not None and replayed.amplitude < ABSENT * measured.standard_error:
+            limit = None
+            reason += ": on neither side is there anything to limit"
+        elif limit is not None:
+            reason += f": its limit of {100.0 * limit:.2g} % cannot be judged, take a longer record"
         return Metric(
             name,
             subject.measured.name,
@@ -196,8 +203,8 @@ def _amplitude_metric(
             replayed.amplitude,
             0.0,
             0.0,
-            None,
-            Verdict.INFORMATIVE,
+            limit,
+            Verdict.INFORMATIVE if limit is None else Verdict.UNDECIDED,
             reason,
         )
     # an amplitude de-biased to nothing is held against its standard error

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from tethertest.compare.alignment import CUTOFF, CUTOFF_SHARE, pair_with, prepare
+from tethertest.compare.alignment import pair_with, prepare
 from tethertest.compare.metrics import (
     ORDERS,
     PHASE_ORDERS,
@@ -23,7 +23,7 @@ from tethertest.records.channel import Channel, ConditionedRun, Window
 from tethertest.records.comparison import Comparison, Metric
 from tethertest.records.lines import ChannelLines
 from tethertest.records.rig import Limits
-from tethertest.signal.filters import filled, low_passed
+from tethertest.signal.noise import white_noise
 from tethertest.spectra.events import ZERO_UNCERTAINTY
 
 #: kind of channel the limits of a rig apply to
@@ -32,8 +32,6 @@ LIMITED_KIND: Final = "tension"
 INFORMATIVE_KIND: Final = "strain"
 #: kind of the channel that drives the replay
 MOTION_KIND: Final = "displacement"
-#: standard deviation of a normal variable over the median of its absolute deviation
-DEVIATION_OF_MEDIAN: Final = 1.4826
 #: channels that are reported even where a run lacks them
 LIMITED_CHANNELS: Final = ("tension_top", "tension_bottom")
 
@@ -81,7 +79,7 @@ def compare(
     names += [name for name in LIMITED_CHANNELS if name not in names]
     drive = _drive_frequency(measured_lines)
     if measured.steady is None or drive is None:
-        reason = f"{_missing(measured, drive)}; noise floor {_noise_floor(measured)}"
+        reason = f"{_missing(measured, drive)}; noise {_noise(measured)}"
         open_ones = [metric for name in names for metric in _all_undecided(measured, name, limits, reason)]
         return without_drive(open_ones, measured.findings, reason)
     metrics: list[Metric] = []
@@ -193,16 +191,14 @@ def _missing(measured: ConditionedRun, drive: float | None) -> str:
     return "no drive: no line of it was fitted" if drive is None else ""
 
 
-def _noise_floor(measured: ConditionedRun) -> str:
-    """Say how much each tension channel scatters, low-passed, over the record (robust: taps do not count)."""
-    floors = []
-    for channel in measured.channels:
-        if channel.kind == LIMITED_KIND and channel.usable.any():
-            smooth = low_passed(filled(channel), channel.rate, min(CUTOFF, CUTOFF_SHARE * channel.rate))
-            used = smooth[channel.usable]
-            floor = DEVIATION_OF_MEDIAN * float(np.median(np.abs(used - np.median(used))))
-            floors.append(f"{floor:.2g} {channel.unit} in {channel.name}")
-    return ", ".join(floors) if floors else "unknown, no tension channel"
+def _noise(measured: ConditionedRun) -> str:
+    """Say what one sample of each tension channel scatters by, whatever the cable does."""
+    found = [
+        f"{channel.noise or white_noise(channel.values[channel.usable]):.2g} {channel.unit} in {channel.name}"
+        for channel in measured.channels
+        if channel.kind == LIMITED_KIND and channel.usable.any()
+    ]
+    return ", ".join(found) if found else "unknown, no tension channel"
 
 
 def _named(channels: Sequence[Channel], name: str) -> Channel | None:

@@ -14,6 +14,8 @@ from tethertest.spectra.crank_angle import CrankAngle, crank_angle
 
 #: the sensor that measures the bottom motion
 MOTION: Final = "heave"
+#: kinds that no drive moves: smoothed by the instrument they would pass for the most exact channels
+SLOW_KINDS: Final = frozenset(["temperature", "count", "other"])
 
 
 def drive_channels(measured: ConditionedRun, wanted: Sequence[Channel] = ()) -> list[Channel]:
@@ -30,7 +32,8 @@ def drive_channels(measured: ConditionedRun, wanted: Sequence[Channel] = ()) -> 
     if heave is not None:
         return [heave]
     among = list(wanted or measured.channels)
-    return [channel for channel in among if channel.kind == "tension"] or among
+    mechanical = [channel for channel in among if channel.kind not in SLOW_KINDS]
+    return [channel for channel in among if channel.kind == "tension"] or mechanical or among
 
 
 def run_drive(

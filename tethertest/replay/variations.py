@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,6 +14,9 @@ from tethertest.replay.channels import replayed_channels
 from tethertest.replay.motion import BottomMotion
 from tethertest.replay.scene import run_scene
 from tethertest.solver import solve
+
+#: one number of several, such as ``drag_area[1]``
+_ITEM = re.compile(r"(\w+)\[(\d+)\]")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,13 +75,18 @@ def moved(rig: Rig, name: str) -> Rig:
         return replace(rig, cable=_added(rig.cable, key, step))
     if not key.startswith("modes."):
         return replace(rig, platform=_added(rig.platform, key, step))
-    _, mode, field = key.split(".")
+    mode, _, field = key.removeprefix("modes.").rpartition(".")
     modes = {**rig.platform.modes, mode: _added(rig.platform.modes[mode], field, step)}
     return replace(rig, platform=replace(rig.platform, modes=modes))
 
 
 def _added(record: Any, field: str, step: float) -> Any:
-    return replace(record, **{field: getattr(record, field) + step})
+    item = _ITEM.fullmatch(field)
+    if item is None:
+        return replace(record, **{field: getattr(record, field) + step})
+    values = list(getattr(record, item[1]))
+    values[int(item[2]) - 1] += step
+    return replace(record, **{item[1]: tuple(values)})
 
 
 def _belongs(name: str, mode: str) -> bool:

@@ -14,6 +14,8 @@ from tethertest.records.events import Front, WaveSpeed
 COVERAGE: Final = 1.959964
 #: shortest interval of a front [s]: two fronts are not known better against each other
 SHORTEST: Final = 1e-9
+#: a smallest slowness below this share of the largest is what the solver leaves of zero
+RESIDUE: Final = 1e-9
 
 
 def wave_speed(
@@ -78,11 +80,13 @@ def wave_speed(
             message = f"no wave of one speed, going up, makes these fronts: {names}"
             raise DataError(message, "check the sensors' clocks and places, or look for fronts one by one")
         slopes.append(max(float(found.x[1]), 0.0))
+    if slopes[0] < RESIDUE * slopes[1]:
+        slopes[0] = 0.0
     weights = 1.0 / np.maximum(highs - lows, SHORTEST)
     slowness = float(np.polyfit(places, times - origin, 1, w=weights)[0])
     slowness = float(np.clip(slowness, slopes[0], slopes[1]))
     slowest, fastest = 1.0 / slopes[1], 1.0 / slopes[0] if slopes[0] > 0.0 else float("inf")
-    speed = 1.0 / slowness if slowness > 0.0 else float("inf")
+    speed = 1.0 / slowness if slowness > RESIDUE * slopes[1] else float("inf")
     share = COVERAGE * mass_error
     off = static_tension if kind == "axial" else 0.0
     return WaveSpeed(

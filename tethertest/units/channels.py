@@ -36,8 +36,11 @@ _KINDS_BY_DIMENSION = (
     "count",
     "strain",
 )
-_FAHRENHEIT = {"degf", "°f", "℉", "deg f", "fahrenheit"}
-_CELSIUS = {"degc", "°c", "℃", "deg c", "celsius", "c"}
+_FAHRENHEIT = {"degf", "°f", "℉", "deg f", "deg_f", "fahrenheit", "degree_fahrenheit", "degrees_fahrenheit"}
+_CELSIUS = {
+    "degc", "°c", "℃", "deg c", "celsius", "c", "degree celsius", "degrees celsius", "degree_celsius",
+    "degrees_celsius", "degreec", "degreesc", "degree_c", "degrees_c", "deg_c", "deg. c", "摄氏度",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

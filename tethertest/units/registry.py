@@ -45,7 +45,9 @@ _WHOLE = {
     "strain": "dimensionless",
     "m/m": "dimensionless",
     "rpm": "cycle_per_minute_",
-    "1/min": "cycle_per_minute_",
+    "1/min": "cycle_per_minute_", "r/min": "cycle_per_minute_", "rev/min": "cycle_per_minute_",
+    "u/min": "cycle_per_minute_", "cpm": "cycle_per_minute_", "bpm": "cycle_per_minute_",
+    "cps": "hertz", "rps": "hertz", "r/s": "hertz", "rev/s": "hertz",
     "deg c": "degC",
     "°c": "degC",
     "℃": "degC",
@@ -73,6 +75,8 @@ _WHOLE = {
     "摄氏度": "degC", "伏": "volt", "伏特": "volt", "毫伏": "millivolt", "赫兹": "hertz", "秒": "second",
 }  # fmt: skip
 
+#: capitals that stand for a unit of quite another size than the one that may be meant
+_CAPITALS = {"MV": "mV", "MV/V": "mV/V", "MA": "mA", "NM": "nm or N m"}
 #: the longest unit that is read: a parser takes minutes for thousands of letters
 _LONGEST = 60
 #: a whole number becomes a float: powers of powers then overflow at once, and do not run without end
@@ -101,6 +105,9 @@ def parse_unit(text: str) -> Any:
     if len(cleaned) > _LONGEST:
         message = f"unit {cleaned[:_LONGEST]!r}... is not known"
         raise QuantityError(message, "use a unit such as N, kN, mm, Hz, mV/V, nm or degC")
+    if cleaned in _CAPITALS:
+        message = f"unit {cleaned!r} is written in capitals and may be {_CAPITALS[cleaned]}"
+        raise QuantityError(message, f"state the unit that is meant, such as {_CAPITALS[cleaned]}")
     alias = _WHOLE.get(cleaned.lower() if cleaned != "Nm" else "Nm")
     if cleaned == "Nm":
         alias = "newton * meter"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from typing import Any
 
 from tethertest.errors import QuantityError
 from tethertest.units.registry import parse_unit, si_unit
@@ -12,6 +13,9 @@ from tethertest.units.registry import parse_unit, si_unit
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 #: a unit starts with a letter, a sign such as % or °, or with "1/"; so "1,5 kN" is no quantity
 _QUANTITY = re.compile(rf"^\s*({_NUMBER})\s*((?:1\s*/|[^\W\d]|[%°℃µ-]).*?)?\s*$")
+#: pint's names of a whole turn, and of angles that are none
+_TURNS = frozenset(["turn", "cycle", "revolution", "revolution_per_minute", "revolution_per_second"])
+_ANGLES = frozenset(["radian", "degree", "arcminute", "arcsecond", "grade", "milliarcsecond"])
 _PLUS_MINUS = re.compile(r"\+/-|±")
 
 
@@ -30,7 +34,8 @@ def parse_quantity(text: str | float, unit: str) -> Quantity:
     ----------
     text : str or float
         ``"48.4 g/m"``, with ``"+/- 0.3 g/m"`` if its uncertainty is known. A bare number is read only where
-        a dimensionless one is asked for.
+        a dimensionless one is asked for. An uncertainty in % is a share of the value, unless the value itself
+        is in %. Turns, cycles and revolutions per time are frequencies; angles per time are refused.
     unit : str
         The SI unit of the result, e.g. ``"kg/m"``; ``"1"`` for a pure number.
 
@@ -63,7 +68,7 @@ def parse_quantity(text: str | float, unit: str) -> Quantity:
     if len(parts) == 1:
         return Quantity(value, None)
     number, written = _split(parts[1], unit)
-    if written == "%" and unit != "1":
+    if written == "%" and _split(value_text, unit)[1] != "%":
         return Quantity(value, abs(value) * _finite(number, text) / 100.0)
     uncertainty = _single(parts[1], unit, difference=True)
     if uncertainty < 0:
@@ -103,16 +108,33 @@ def _single(text: str, unit: str, *, difference: bool = False) -> float:
         message = f"found {text!r} without a unit, expected a quantity in {unit}"
         raise QuantityError(message, f'add the unit: "{text.strip()} {unit}"')
     target = si_unit(unit)
-    if unit == "Hz" and re.search(r"\brad", written):
-        message = f"found {text!r}: an angular frequency where a frequency in Hz is expected"
-        raise QuantityError(message, "divide by 2 pi and write Hz")
     if unit == "K" and written.lower() in {"degc", "°c", "℃", "deg c"} and not difference:
         return _finite(number + 273.15, text)
     found = parse_unit(written)
+    if unit == "Hz":
+        number *= _turns(found, text)
     if found.dimensionality != target.dimensionality:
         message = f"found {text.strip()!r} of dimension {found.dimensionality}, expected a quantity in {unit}"
         raise QuantityError(message, f"give the value in {unit} or another unit of that dimension")
     return _finite(number * float(found.to(target).magnitude), text)
+
+
+def _turns(found: Any, text: str) -> float:
+    """Return what makes a frequency of whole turns one in Hz: pint counts their angle in radians.
+
+    Raises
+    ------
+    QuantityError
+        It counts another angle, such as an angular frequency in rad/s or deg/s.
+    """
+    factor = 1.0
+    for name, power in found.unit_items():
+        if name in _TURNS:
+            factor /= (2.0 * math.pi) ** power
+        elif name in _ANGLES:
+            message = f"found {text!r}: an angular frequency where a frequency in Hz is expected"
+            raise QuantityError(message, "divide by 2 pi, or by 360 degrees, and write Hz")
+    return factor
 
 
 def _finite(value: float, text: object) -> float:

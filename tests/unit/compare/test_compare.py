@@ -102,13 +102,13 @@ def test_a_fatal_finding_or_many_lost_samples_leave_the_run_undecided(case: Case
     assert metric(comparison, "peak_tension").verdict is Verdict.PASS
 
 
-def test_a_run_without_drive_says_so_once_with_its_noise_floor(case: Case) -> None:
+def test_a_run_without_drive_says_so_once_with_its_noise(case: Case) -> None:
     still = replace(channels(scale=0.0)[0], name="heave", kind="displacement", unit="m", at=0.0)
     quiet = ConditionedRun((*channels(scale=0.0, noise=0.01), still), (), (), None, None, None)
     comparison = compare(quiet, (), (), (), LIMITS)
     assert comparison.verdict is Verdict.UNDECIDED
     assert len(comparison.reasons) == 1
-    assert "no drive: the run has no steady window; noise floor 0.005" in comparison.reasons[0]
+    assert "no drive: the run has no steady window; noise 0.01 N in tension_top" in comparison.reasons[0]
     assert metric(comparison, "sprague_geers").verdict is Verdict.UNDECIDED
 
 
@@ -125,6 +125,21 @@ def test_an_order_that_is_on_neither_side_decides_nothing(case: Case) -> None:
     assert third.verdict is Verdict.INFORMATIVE
     assert "not significant in the measurement" in third.reason
     assert comparison.verdict is Verdict.PASS
+
+
+def test_a_limit_on_an_order_that_the_noise_hides_is_undecided(case: Case) -> None:
+    """The replay has it and the measurement cannot tell: less data must not turn a fail into a pass."""
+    limits = replace(LIMITS, order_amplitude={"1": 0.05, "3": 0.1})
+    hidden = tuple(
+        replace(channel, values=channel.values + 2e-4 * np.cos(2.0 * np.pi * 1.5 * channel.time))
+        for channel in channels()
+    )
+    comparison = replace(case, limits=limits).against(hidden)
+    third = metric(comparison, "order_amplitude 3")
+    assert third.verdict is Verdict.UNDECIDED
+    assert third.limit == 0.1
+    assert comparison.verdict is Verdict.UNDECIDED
+    assert "its limit of 10 % cannot be judged" in comparison.reasons[0]
 
 
 def test_strains_inform_and_never_fail(case: Case) -> None:

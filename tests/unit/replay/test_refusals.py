@@ -16,6 +16,7 @@ from tethertest.records.rig import Limits, Rig
 from tethertest.records.run import Drive, Run, RunFile, RunPlatform
 from tethertest.records.scene import MeasuredMotion
 from tethertest.replay import replayed_channels, run_scene
+from tethertest.replay.variations import moved
 from tethertest.solver import solve
 
 CABLE = Cable(3.0, "unstretched", 0.0484, axial_stiffness=10_020.0, axial_damping_time=1e-4)
@@ -45,3 +46,12 @@ def test_a_cable_whose_waves_no_machine_can_follow_is_refused(key: str, value: f
 def test_any_damping_can_be_followed() -> None:
     damped = replace(RIG, cable=replace(CABLE, axial_damping_time=10.0))
     assert run_scene(RUN, 60.0, rig=damped).cable.axial_damping_time == 10.0
+
+
+def test_one_number_of_several_and_any_name_of_a_mode_can_be_moved() -> None:
+    platform = replace(RIG.platform, drag_area=(0.1, 0.2, 0.3), modes={"soft.v2": PlatformMode(50.0, 5.0)})
+    uncertain = {"platform.drag_area[2]": 0.05, "platform.modes.soft.v2.hover_stiffness": 7.0}
+    rig = replace(RIG, platform=platform, uncertainty=uncertain)
+    assert moved(rig, "platform.drag_area[2]").platform.drag_area == (0.1, 0.25, 0.3)
+    stiffer = moved(rig, "platform.modes.soft.v2.hover_stiffness").platform.modes["soft.v2"]
+    assert stiffer == PlatformMode(57.0, 5.0)

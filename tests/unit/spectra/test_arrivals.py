@@ -79,6 +79,14 @@ def test_axial_fronts_give_speed_and_stiffness(article: list[Channel]) -> None:
     assert speed.implied == "axial_stiffness"
 
 
+def test_fronts_that_may_be_of_one_instant_give_no_speed_but_a_bound() -> None:
+    fronts = [Front("bottom", 0.0, 1.0, (0.99, 1.01)), Front("top", 1.0, 1.0, (0.995, 1.005))]
+    speed = wave_speed(fronts, "axial", LENGTH, MASS)
+    assert np.isinf(speed.speed)
+    assert np.isinf(speed.interval[1])
+    assert speed.interval[0] == pytest.approx(LENGTH / 0.015, rel=1e-6)
+
+
 def test_the_transverse_wave_is_a_kink_that_gives_the_tension(article: list[Channel]) -> None:
     fronts = []
     for item in article:

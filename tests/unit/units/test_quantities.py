@@ -16,6 +16,13 @@ from tethertest.units import channel_scale, dimension_of, format_quantity, parse
         ("48.4 g/m", "kg/m", 0.0484),
         ("10.02 kN", "N", 10020.0),
         ("120 rpm", "Hz", 2.0),  # not 12.57: a revolution is no radian here
+        ("18 cycles/min", "Hz", 0.3),
+        ("0.3 cycle/s", "Hz", 0.3),
+        ("0.3 rps", "Hz", 0.3),
+        ("0.3 turn/s", "Hz", 0.3),
+        ("18 rev/min", "Hz", 0.3),
+        ("18 U/min", "Hz", 0.3),
+        ("18 cpm", "Hz", 0.3),
         ("5 %", "1", 0.05),
         (0.25, "1", 0.25),
         ("6.5e-6 1/delta_degC", "1/K", 6.5e-6),
@@ -41,6 +48,7 @@ def test_a_quantity_becomes_si(text: str | float, unit: str, value: float) -> No
         ("5", "N", "without a unit"),
         ("5 foo", "N", "not known"),
         ("2 rad/s", "Hz", "angular frequency"),
+        ("108 deg/s", "Hz", "angular frequency"),
         ("nan N", "N", "expected a number"),
         ("1e999 N", "N", "not a finite number"),
         ("5 N/", "N", "cannot be read"),
@@ -67,6 +75,32 @@ def test_what_is_no_such_quantity_is_refused_with_a_remedy(text: object, unit: s
 )
 def test_an_uncertainty_is_kept(text: str, uncertainty: float) -> None:
     assert parse_quantity(text, "N").uncertainty == pytest.approx(uncertainty)
+
+
+@pytest.mark.parametrize(
+    ("text", "uncertainty"),
+    [
+        ("2.013 mV/V +/- 0.1 %", 2.013e-6),  # as a data sheet has it
+        ("0.78 +/- 0.5 %", 0.0039),
+        ("1.2 +/- 10 %", 0.12),
+        ("5 % +/- 1 %", 0.01),  # of the same kind as the value
+        ("5 % +/- 0.01", 0.01),
+    ],
+)
+def test_per_cent_is_a_share_of_a_value_that_is_not_in_per_cent(text: str, uncertainty: float) -> None:
+    assert parse_quantity(text, "1").uncertainty == pytest.approx(uncertainty)
+
+
+@pytest.mark.parametrize("written", ["MV", "MV/V", "NM"])
+def test_capitals_that_may_be_another_unit_are_refused(written: str) -> None:
+    with pytest.raises(QuantityError, match="written in capitals and may be"):
+        channel_scale(written)
+
+
+@pytest.mark.parametrize("written", ["degC", "°C", "degree_Celsius", "degreeC", "degrees_C", "Celsius"])
+def test_every_spelling_of_celsius_has_its_zero(written: str) -> None:
+    scale = channel_scale(written)
+    assert (scale.unit, scale.factor, scale.offset) == ("K", 1.0, 273.15)
 
 
 @pytest.mark.parametrize(

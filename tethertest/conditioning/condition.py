@@ -19,6 +19,7 @@ from tethertest.conditioning.plateaus import with_plateaus_flagged
 from tethertest.conditioning.plausible import check_alive, check_ranges, check_rate, hole_findings
 from tethertest.conditioning.rest import windows_of
 from tethertest.conditioning.sensors import finished
+from tethertest.conditioning.shared_clocks import shared_clock_findings
 from tethertest.conditioning.spikes import with_spikes_flagged
 from tethertest.conditioning.steps import with_steps_flagged
 from tethertest.errors import DataError
@@ -91,6 +92,8 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
             mapped_finding(item, fit) for log in opened if log.clock == name for item in log.findings
         ]
         findings += problems
+        if not any(item.severity == "fatal" for item in problems):
+            findings += shared_clock_findings(fit, believed[name], reference, run, guide)
         channels += [mapped(channel, fit) for channel in by_clock[name]]
     windows = windows_of(run, channels, guide.drive_frequency)
     done, found = finished(with_steps_flagged(channels), run.rig, guide, windows)

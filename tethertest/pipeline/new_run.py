@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -113,7 +114,7 @@ def draft_of(folder: Path, logs: Sequence[Path], rigs: Path | None) -> Draft:
     modes = tuple(rig.platform.modes) if rig is not None else ()
     date, why = _date(read)
     entries = [DraftLog(file, log.format, *_clock(log, rig), matched(log, rig)) for file, log in read.items()]
-    entries = _by_exclusion(entries, rig)
+    entries = _by_exclusion(_one_log_a_guess(entries), rig)
     entries += [
         DraftLog(file, reader, TODO, "the log is not read yet", Matched(), error.problem, error.remedy)
         for file, (reader, error) in problems.items()
@@ -181,6 +182,18 @@ def _clock(log: RawLog, rig: Rig | None) -> tuple[str, str]:
         names = ", ".join(item.name for item in rig.instrument)
         return TODO, f"logged at {rate:.4g} Hz; one of {names}"
     return best[1], f"guessed: logged at {rate:.4g} Hz, the instrument at {best[2]:.4g} Hz"
+
+
+def _one_log_a_guess(entries: list[DraftLog]) -> list[DraftLog]:
+    """Return the logs without clocks that are guessed for more than one: their rates tell nothing then."""
+    guessed = Counter(entry.clock for entry in entries)
+    why = "{} by its rate, and so is another log; logs of one logger share its name, others do not"
+    return [
+        replace(entry, clock=TODO, why=why.format(entry.clock))
+        if entry.clock != TODO and guessed[entry.clock] > 1
+        else entry
+        for entry in entries
+    ]
 
 
 def _by_exclusion(entries: list[DraftLog], rig: Rig | None) -> list[DraftLog]:

@@ -161,7 +161,15 @@ class Bench:
         return replace(self.run, file=replace(self.run.file, **changes))
 
 
-def make_bench(seed: int = 1, *, taps: bool = True, ramps: bool = True, drive: str = "crank-slider") -> Bench:
+def make_bench(
+    seed: int = 1,
+    *,
+    taps: bool = True,
+    ramps: bool = True,
+    drive: str = "crank-slider",
+    shared: tuple[str, ...] = (),
+) -> Bench:
+    """Make a run; `shared` are instruments that run by the clock of the load cells."""
     random = np.random.default_rng(seed)
     step = 5e-4
     true = np.arange(-1.0, END + 1.0, step)
@@ -172,6 +180,7 @@ def make_bench(seed: int = 1, *, taps: bool = True, ramps: bool = True, drive: s
         name: (float(sign * random.uniform(0.3, 2.5)), float(random.uniform(-8e-5, 8e-5)))
         for name, sign in zip(("daq", "interrogator", "encoder"), signs, strict=True)
     }
+    clocks |= dict.fromkeys(shared, clocks["daq"])
     columns: dict[str, np.ndarray] = {}
     stamps: dict[str, np.ndarray] = {}
     rates = {"daq": 500.0, "interrogator": 100.0, "encoder": 200.0}

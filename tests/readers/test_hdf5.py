@@ -116,3 +116,38 @@ def test_a_cut_file_is_refused(made):
     path.write_bytes(path.read_bytes()[:2000])
     with pytest.raises(FileFormatError, match="the HDF5 file is damaged or cut"):
         read_log(path)
+
+
+PACKED = {"units": "N", "scale_factor": 0.001, "add_offset": 1.0, "_FillValue": np.int16(-32767)}
+
+
+@pytest.mark.parametrize("shape", [(100,), (100, 2)])
+def test_packed_numbers_are_unpacked_and_said(tmp_path, shape):
+    """As the CF conventions of netCDF have it: scale, then offset, and a number for no value."""
+    path = tmp_path / "packed.h5"
+    stored = np.full(shape, 4000, "i2")
+    stored[50] = -32767
+    with h5py.File(path, "w") as file:
+        file["time"] = np.arange(100) * 0.01
+        file["time"].attrs["units"] = "s"
+        file["F"] = stored
+        file["F"].attrs.update(PACKED)
+    log = read_log(path)
+    assert len(log.channels) == len(stored.reshape(100, -1)[0])
+    for channel in log.channels:
+        assert np.flatnonzero(np.isnan(channel.values)).tolist() == [50]
+        np.testing.assert_array_equal(np.delete(channel.values, 50), 5.0)
+    assert any(
+        "scale_factor 0.001 times" in remark and "-32767 read as missing" in remark for remark in log.remarks
+    )
+
+
+@pytest.mark.parametrize("value", [np.nan, "text", [1.0, 2.0]])
+def test_attributes_that_say_no_number_change_nothing(tmp_path, value):
+    path = tmp_path / "plain.h5"
+    with h5py.File(path, "w") as file:
+        file["time"] = np.arange(100) * 0.01
+        file["F"] = np.arange(100.0)
+        file["F"].attrs["_FillValue"] = value
+        file["F"].attrs["scale_factor"] = value
+    np.testing.assert_array_equal(read_log(path).channels[0].values, np.arange(100.0))

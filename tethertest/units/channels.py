@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Any, Final
 
 from tethertest.errors import QuantityError
-from tethertest.units.registry import STANDARD_GRAVITY, is_ratio, parse_unit, si_unit
+from tethertest.units.registry import STANDARD_GRAVITY, is_ratio, is_voltage_ratio, parse_unit, si_unit
 
 #: kind of channel -> SI unit of its values ("" where the logger's own unit stays)
 KINDS: Final = {
@@ -41,6 +42,10 @@ _CELSIUS = {
     "degc", "°c", "℃", "deg c", "celsius", "c", "degree celsius", "degrees celsius", "degree_celsius",
     "degrees_celsius", "degreec", "degreesc", "degree_c", "degrees_c", "deg_c", "deg. c", "摄氏度",
 }  # fmt: skip
+
+
+#: one volt over another, which cancels
+_VOLT_OVER_VOLT = re.compile(r"([mµμu]?V|volts?)\s*/\s*\1", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +100,9 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
     if not target:
         return UnitScale("other", text, 1.0)
     unit = si_unit(target)
+    if found == "ratio" and not (_VOLT_OVER_VOLT.fullmatch(text) or is_voltage_ratio(quantity)):
+        message = f"unit {written!r} is no output of a bridge, volt over volt"
+        raise QuantityError(message, "log it in mV/V: um/m holds the amplifier's gauge factor too")
     if dimension != unit.dimensionality:
         message = f"unit {written!r} has dimension {dimension}, expected one of {found} ({target})"
         raise QuantityError(message, "correct the sensor's kind in the rig file or the log's units")

@@ -149,6 +149,14 @@ def is_ratio(quantity: Any) -> bool:
     return all(name in shares or registry().Unit(name).dimensionality == length for name in names)
 
 
+def is_voltage_ratio(quantity: Any) -> bool:
+    """Return whether a unit is a voltage over a voltage, as a bridge puts out."""
+    items = list(quantity.unit_items())
+    volt = registry().volt.dimensionality
+    powers = [power for name, power in items if registry().Unit(name).dimensionality == volt]
+    return bool(powers) and len(powers) == len(items) and sum(powers) == 0
+
+
 def si_unit(text: str) -> Any:
     """Return the pint unit of one of the package's own SI texts: ``"1"``, ``"count"`` or plain SI."""
     return registry().parse_units({"1": "dimensionless", "count": "logger_count_"}.get(text, text))

@@ -91,6 +91,20 @@ def test_per_cent_is_a_share_of_a_value_that_is_not_in_per_cent(text: str, uncer
     assert parse_quantity(text, "1").uncertainty == pytest.approx(uncertainty)
 
 
+@pytest.mark.parametrize("written", ["um/m", "%", "1", "ppm"])
+def test_a_bridge_puts_out_volt_over_volt(written: str) -> None:
+    """An amplifier's um/m holds its gauge factor: with k = 2, 1 mV/V is 2000 um/m."""
+    with pytest.raises(QuantityError, match="no output of a bridge"):
+        channel_scale(written, "ratio")
+
+
+@pytest.mark.parametrize(
+    ("written", "factor"), [("mV/V", 1e-3), ("V/V", 1.0), ("uV/V", 1e-6), ("mV / V", 1e-3)]
+)
+def test_ratios_of_a_bridge(written: str, factor: float) -> None:
+    assert channel_scale(written, "ratio").factor == pytest.approx(factor)
+
+
 @pytest.mark.parametrize("written", ["MV", "MV/V", "NM"])
 def test_capitals_that_may_be_another_unit_are_refused(written: str) -> None:
     with pytest.raises(QuantityError, match="written in capitals and may be"):

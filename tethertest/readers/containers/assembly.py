@@ -48,6 +48,7 @@ def assembled(tree: Tree, name: str, leaves: Sequence[Leaf], facts: Facts, setti
     length = _length(tree, name, leaves, settings)
     remarks: list[str] = []
     parts = [part for leaf in leaves if (part := _part(tree, leaf, length, settings, remarks)) is not None]
+    remarks += [f"{part.leaf.name!r}: {part.leaf.remark}" for part in parts if part.leaf.remark]
     width = sum(part.width for part in parts)
     if width > COLUMNS or width * length > CELLS:
         message = (

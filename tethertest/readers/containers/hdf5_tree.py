@@ -19,6 +19,7 @@ from tethertest.readers.containers.limits import (
     RATIO_FROM,
     TEXT_BYTES,
 )
+from tethertest.readers.containers.packing import PLAIN, Packing, packing_of
 from tethertest.readers.containers.table import Column, Numbers
 from tethertest.readers.containers.tree import NAME_LISTS, UNIT_KEYS, Branch, Leaf, Records, facts_of
 
@@ -134,8 +135,9 @@ class Walk:
             names = next((found for key in NAME_LISTS if (found := _texts(item.attrs, key))), ())
             units = next((found for key in UNIT_KEYS if (found := _texts(item.attrs, key))), ())
             unit = units[0] if len(units) == 1 else ""
-            load = partial(self._loaded, item, sides)
-            leaves.append(Leaf(name, sides, load, unit=unit, units=units, names=names))
+            packing = packing_of(item)
+            load = partial(self._loaded, item, sides, packing)
+            leaves.append(Leaf(name, sides, load, unit=unit, units=units, names=names, remark=packing.remark))
 
     def _scalar_attributes(self, group: Any) -> Iterator[tuple[str, object]]:
         for count, name in enumerate(group.attrs):
@@ -149,8 +151,8 @@ class Walk:
             elif text := text_attribute(group.attrs, name):
                 yield name, text
 
-    def _loaded(self, item: Any, sides: tuple[int, ...]) -> Numbers:
-        values = values_of(self.path, item).reshape(sides)
+    def _loaded(self, item: Any, sides: tuple[int, ...], packing: Packing = PLAIN) -> Numbers:
+        values = packing.unpacked(values_of(self.path, item).reshape(sides))
         return values.astype(np.int8) if values.dtype.kind == "b" else values
 
     def _loaded_records(self, item: Any) -> tuple[Column, ...]:

@@ -35,6 +35,7 @@ class Leaf:
     units: tuple[str, ...] = ()  #: of the columns of a matrix
     names: tuple[str, ...] = ()  #: of the columns of a matrix
     rows_first: bool = False  #: the first axis is known to be the samples
+    remark: str = ""  #: what is done to the values as they are loaded
 
 
 @dataclass(frozen=True, slots=True, eq=False)

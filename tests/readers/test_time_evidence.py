@@ -1,6 +1,7 @@
 """Logs whose time stands in several columns, or can be read in two ways: never one of them in silence."""
 
 import datetime as dt
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
 from tethertest.readers.text import textlog
+from tethertest.records.channel import RawLog
 
 BASE = dt.datetime(2026, 9, 5, 10)
 
@@ -156,3 +158,16 @@ def test_a_start_among_the_rows_is_refused(write, first):
     with pytest.raises(FileFormatError, match="among the rows begins a second recording") as caught:
         read_log(write(text))
     assert caught.value.line == 62 + bool(first)
+
+
+@pytest.mark.parametrize("size", [64, 1 << 20])
+def test_rows_know_their_lines(write, monkeypatch, size):
+    monkeypatch.setattr(textlog, "BLOCK_BYTES", size)
+    data = [f"{k / 100},{k % 7}" for k in range(60)]
+    lines = ["time,F", "s,N", *data[:20], "# event", "", *data[20:40], "# event", *data[40:]]
+    log = read_log(write("\n".join(lines) + "\n"))
+    assert [log.line_of(row) for row in range(60)] == [lines.index(cells) + 1 for cells in data]
+
+
+def test_a_row_of_an_unknown_line_has_none():
+    assert RawLog(Path("log.tdms"), "tdms", None, ()).line_of(3) is None

@@ -111,13 +111,13 @@ def _check_order(time: FloatArray, step: FloatArray, median: float, raw: RawLog)
         raise DataError(message, "export the log again with its time column", path=raw.path)
     if back.size:
         row = int(back[0]) + 1
-        line = None if raw.header_line is None else raw.header_line + 1 + row
         more = f", and {back.size - 1} more times" if back.size > 1 else ""
         message = (
             f"time goes backwards at row {row + 1} ({time[row]:.6g} s after {time[row - 1]:.6g} s, "
-            f"counted from the log's start{more})"
+            f"from the run's date{more})"
         )
-        raise DataError(message, "export the log again, sorted by time", path=raw.path, line=line)
+        remedy = "export the log again, sorted by time"
+        raise DataError(message, remedy, path=raw.path, line=raw.line_of(row))
 
 
 def irregularity(

@@ -80,7 +80,13 @@ class RawLog:
     rate: float | None = None  #: [Hz], as the file states it
     remarks: tuple[str, ...] = ()  #: what a person should know: lost rows, text events, segments
     reason: str = ""  #: why this reader was chosen
+    row_lines: tuple[tuple[int, int], ...] = ()  #: row and its line, from 1, where lines do not just follow
     fingerprint: Fingerprint | None = None  #: None where a reader was called by itself
+
+    def line_of(self, row: int) -> int | None:
+        """Return the line of the file in which a row (from 0) stands; None where the reader does not say."""
+        begun = [(first, line) for first, line in self.row_lines if first <= row]
+        return begun[-1][1] + row - begun[-1][0] if begun else None
 
     @property
     def sha256(self) -> str:

@@ -17,7 +17,7 @@ ENTRY = Log("fbg.txt", "interrogator")
 
 
 def log(start: dt.datetime | None = None) -> RawLog:
-    return RawLog(Path("run07/fbg.txt"), "test", start, (), header_line=10)
+    return RawLog(Path("run07/fbg.txt"), "test", start, (), row_lines=((0, 11),))
 
 
 def test_clean_stamps_stay_as_they_are():

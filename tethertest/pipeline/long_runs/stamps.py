@@ -133,12 +133,10 @@ def _seen(log: Gathered, median: float, sizes: Sizes) -> _Seen:
 
 
 def _backwards(log: Gathered, row: int, pair: FloatArray) -> DataError:
-    line = None if log.raw.header_line is None else log.raw.header_line + 1 + row
     message = (
-        f"time goes backwards at row {row + 1} ({pair[1]:.6g} s after {pair[0]:.6g} s, counted from the "
-        "log's start)"
+        f"time goes backwards at row {row + 1} ({pair[1]:.6g} s after {pair[0]:.6g} s, from the run's date)"
     )
-    return DataError(message, "export the log again, sorted by time", path=log.raw.path, line=line)
+    return DataError(message, "export the log again, sorted by time", path=log.raw.path)
 
 
 def _plain(

@@ -12,6 +12,7 @@ from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.catman_header import MARK, Header, read_header
 from tethertest.readers.formats.catman_time import channel_times, is_time
 from tethertest.readers.text.document import Head, read_document
+from tethertest.readers.text.rows import followed_lines
 from tethertest.readers.text.stamps import Stamps, parse_stamps, time_zone_of
 from tethertest.readers.text.table import Rows, check_widths, find_rows, read_columns
 from tethertest.records.channel import RawLog
@@ -88,6 +89,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         decimal=rows.decimal,
         separator=header.separator,
         date_order="" if stamps is None else stamps.date_order,
+        row_lines=tuple(followed_lines(rows.lines)),
         header_line=header.names_line,
         rate=1.0 / intervals.pop() if len(intervals) == 1 else None,
         remarks=(*renamed, *columns.remarks, *remarks),

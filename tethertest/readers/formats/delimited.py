@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from tethertest.readers.channels import raw_channel, with_units
 from tethertest.readers.text.document import Head
-from tethertest.readers.text.rows import Growing, Tally, regrouped
+from tethertest.readers.text.rows import Growing, Tally, followed_lines, regrouped
 from tethertest.readers.text.table_log import TableLog, open_table
 from tethertest.readers.text.textlog import Progress
 from tethertest.records.arrays import FloatArray, frozen
@@ -53,14 +54,18 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     tally = Tally(table.plan.names)
     columns = [Growing(table.expected_rows) for _ in range(1 + len(table.channels))]
     encoding = table.text.encoding
+    row_lines: list[tuple[int, int]] = []
+    row = line = 0
     for block in table.blocks():
+        row_lines += followed_lines(block.lines, row, line)
+        row, line = row + len(block.lines), int(block.lines[-1])
         for column, part in zip(columns, (block.time, *block.values), strict=True):
             column.extend(part)
         tally.add(block)
         encoding = block.encoding
     arrays = [column.array() for column in columns]
     remarks = (*table.remarks_before, *tally.remarks(), *table.remarks_after)
-    return _log(table, settings, arrays, encoding, remarks)
+    return replace(_log(table, settings, arrays, encoding, remarks), row_lines=tuple(row_lines))
 
 
 def stream(path: Path, settings: Log | None, rows: int, progress: Progress | None = None) -> Iterator[RawLog]:

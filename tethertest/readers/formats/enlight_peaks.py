@@ -11,6 +11,7 @@ from tethertest.readers.channels import raw_channel, with_units
 from tethertest.readers.containers.limits import COLUMNS
 from tethertest.readers.formats.enlight import find_preamble
 from tethertest.readers.text.document import HEAD_BYTES, Head, read_document
+from tethertest.readers.text.rows import followed_lines
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import Columns, Rows, check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
@@ -94,6 +95,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         decimal=decimal,
         separator="\t",
         date_order=stamps.date_order,
+        row_lines=tuple(followed_lines(rows.lines)),
         header_line=preamble.names_line,
         remarks=(*columns.remarks, *remarks),
     )

@@ -12,6 +12,7 @@ from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.enlight import find_preamble, has_mark
 from tethertest.readers.text.cells import split_unit
 from tethertest.readers.text.document import HEAD_BYTES, Head, read_document
+from tethertest.readers.text.rows import followed_lines
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
@@ -94,6 +95,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         decimal=decimal,
         separator="\t",
         date_order=stamps.date_order,
+        row_lines=tuple(followed_lines(rows.lines)),
         header_line=preamble.names_line,
         remarks=(*renamed, *columns.remarks, *remark),
     )

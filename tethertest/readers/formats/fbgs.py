@@ -13,6 +13,7 @@ from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.fbgs_clock import line_clock
 from tethertest.readers.formats.fbgs_placing import is_wavelength, placed
 from tethertest.readers.text.document import Head, read_document
+from tethertest.readers.text.rows import followed_lines
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import Columns, Rows, check_widths, find_rows, read_columns
 from tethertest.records.arrays import BoolArray, frozen
@@ -97,6 +98,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         decimal=rows.decimal,
         separator="\t",
         date_order=stamps.date_order,
+        row_lines=tuple(followed_lines(rows.lines)),
         header_line=1,
         rate=clock.rate,
         remarks=(*renamed, *columns.remarks, *clock.remarks, *_unit_remarks(wavelengths, settings), *remarks,

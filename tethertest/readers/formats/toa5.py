@@ -19,6 +19,7 @@ import numpy as np
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, with_units
 from tethertest.readers.text.document import Document, Head, read_document
+from tethertest.readers.text.rows import followed_lines
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
@@ -116,6 +117,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         decimal=decimal,
         separator=",",
         date_order=stamps.date_order,
+        row_lines=tuple(followed_lines(rows.lines)),
         header_line=2,
         remarks=tuple(remarks),
     )

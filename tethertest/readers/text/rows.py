@@ -12,6 +12,8 @@ from tethertest.records.arrays import FloatArray
 
 #: comments among the rows that are remembered, and those that are remarked one by one
 _COMMENTS, _SHOWN = 1000, 5
+#: lines between rows that are remembered, a block
+_ANCHORS = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +92,22 @@ def _joined(blocks: Sequence[RowBlock]) -> RowBlock:
         tuple(comments),
         blocks[-1].encoding,
     )
+
+
+def followed_lines(lines: Integers, row: int = 0, after: int = 0) -> Iterator[tuple[int, int]]:
+    """Yield the rows that do not stand in the line behind the row before, and their lines.
+
+    Parameters
+    ----------
+    lines : (n,) int64
+        Lines of consecutive rows.
+    row : int
+        Number of the first of them.
+    after : int
+        Line of the row before; 0 for the first row of a log.
+    """
+    apart = np.flatnonzero(np.diff(lines, prepend=after if after else lines[:1] - 2) != 1)
+    yield from ((row + int(place), int(lines[place])) for place in apart[:_ANCHORS])
 
 
 class Tally:

@@ -17,6 +17,7 @@ from tethertest.conditioning.load_cells import calibrated
 from tethertest.conditioning.logged import LoggedChannels, as_logged
 from tethertest.conditioning.plateaus import with_plateaus_flagged
 from tethertest.conditioning.plausible import check_alive, check_ranges, check_rate, hole_findings
+from tethertest.conditioning.pushing import pushing_findings
 from tethertest.conditioning.rest import windows_of
 from tethertest.conditioning.sensors import finished
 from tethertest.conditioning.shared_clocks import shared_clock_findings
@@ -97,7 +98,7 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
         channels += [mapped(channel, fit) for channel in by_clock[name]]
     windows = windows_of(run, channels, guide.drive_frequency)
     done, found = finished(with_steps_flagged(channels), run.rig, guide, windows)
-    findings += (*windows.findings, *found)
+    findings += (*windows.findings, *found, *pushing_findings(done, run.rig))
     at_rest = [item for item in (windows.rest_before, windows.rest_after) if item is not None]
     result: list[Channel] = []
     for channel in done:

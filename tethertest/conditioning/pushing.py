@@ -1,0 +1,56 @@
+"""Tensions that no cable can have: lower for long than its own weight can push on a cell."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from tethertest.records.channel import Channel, Finding
+from tethertest.records.rig import Rig
+from tethertest.signal.filters import filled
+
+#: standard uncertainty of a zero besides the channel's own: tare and drift of a cell for 100 N over a run [N]
+ZERO: Final = 0.03
+#: so many of those too low, for so long [s], is no error of the zero that is known
+SIGMAS: Final = 5.0
+LONGEST: Final = 0.05
+
+
+def pushing_findings(channels: Sequence[Channel], rig: Rig) -> tuple[Finding, ...]:
+    """Return a fatal finding for each tension that is too low for long: what it rests at is stated too low.
+
+    Parameters
+    ----------
+    channels : sequence of Channel
+        All channels of a run, tared; tensions [N] are looked at.
+    rig : Rig
+        Of its cable, what is above a cell may stand on it when it is slack.
+    """
+    weight = rig.cable.mass_per_length * rig.cable.length * rig.gravity
+    found = []
+    for channel in channels:
+        if channel.kind != "tension" or not channel.usable.any() or channel.rate <= 0.0:
+            continue
+        # a low-pass would ring below zero beside every snap
+        middle = median_filter(filled(channel), max(round(LONGEST * channel.rate), 1))
+        lightest = -weight * (1.0 - (channel.at or 0.0))
+        limit = SIGMAS * float(np.hypot(ZERO, channel.offset_uncertainty))
+        below = np.concatenate(([False], middle < lightest - limit, [False]))
+        starts, stops = np.flatnonzero(np.diff(below.astype(np.int8))).reshape(-1, 2).T
+        long = (stops - starts) / channel.rate >= LONGEST
+        if not np.any(long):
+            continue
+        spans = [(a, b) for a, b in zip(starts[long].tolist(), stops[long].tolist(), strict=True)]
+        lowest = min(float(np.min(middle[a:b])) for a, b in spans)
+        text = (
+            f"down to {lowest:.3g} N in {len(spans)} spans, and a slack cable pushes with its weight at most "
+            f"({lightest:.2g} N): the tension at rest (static_tension in the rig file) or the rest window is "
+            f"off by {lightest - lowest:.2g} N at least"
+        )
+        when = tuple((float(channel.time[a]), float(channel.time[b - 1])) for a, b in spans)
+        count = sum(b - a for a, b in spans)
+        found.append(Finding(channel.name, "negative_tension", text, "fatal", when, count))
+    return tuple(found)

@@ -95,3 +95,11 @@ def test_infinity_and_numbers_beyond_float_are_missing_and_told(write):
 
 def test_the_encoding_is_told(write):
     assert read_log(write(json.dumps(ROWS), encoding="utf-16")).encoding == "utf-16"
+
+
+def test_units_beside_the_data_hold_for_it(write):
+    text = '{"units": {"time": "ms", "F": "kN"}, "data": {"time": [0, 10, 20, 30], "F": [1, 2, 3, 4]}}'
+    log = read_log(write(text))
+    assert log.channels[0].time.tolist() == [0.0, 0.01, 0.02, 0.03]
+    assert log.channels[0].unit == "kN"
+    assert log.remarks == ()

@@ -171,3 +171,13 @@ def test_rows_know_their_lines(write, monkeypatch, size):
 
 def test_a_row_of_an_unknown_line_has_none():
     assert RawLog(Path("log.tdms"), "tdms", None, ()).line_of(3) is None
+
+
+def test_a_start_that_is_no_stamp_is_a_comment(write):
+    text = rows(
+        "# start: cold\nTime [s],F [N]",
+        lambda k: f"{k / 100},{k % 7}" + ("\n# started: again" if k == 9 else ""),
+    )
+    log = read_log(write(text))
+    assert log.start is None
+    assert "comment 'started: again' among the rows, 1 times, first in line 13" in log.remarks

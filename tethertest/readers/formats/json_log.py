@@ -125,21 +125,24 @@ def _whole(text: str) -> float | int:
 
 def _branches(path: Path, content: Any, skip: int, left_out: dict[str, str]) -> Iterator[Branch]:
     """Yield every object that directly holds lists of values."""
-    waiting: list[tuple[str, Any, int]] = [("", content if isinstance(content, dict) else {"": content}, 0)]
+    whole = content if isinstance(content, dict) else {"": content}
+    waiting: list[tuple[str, Any, int, dict[str, str]]] = [("", whole, 0, {})]
     count = 0
     while waiting:
-        here, value, depth = waiting.pop(0)
+        here, value, depth, units = waiting.pop(0)
         count += 1
         if depth > DEPTH or count > OBJECTS:
             message = f"the JSON has more than {DEPTH} levels or {OBJECTS} objects outside its tables"
             raise FileFormatError(message, "export the channels as plain lists", path=path)
-        yield _branch(path, here, value, skip, left_out)
+        units = {**units, **_units(value)}  # those of an object hold for what is in it
+        yield _branch(path, here, value, skip, left_out, units)
         inner = [(name, item) for name, item in value.items() if isinstance(item, dict)]
-        waiting += [(f"{here}/{name}" if here else name, item, depth + 1) for name, item in inner]
+        waiting += [(f"{here}/{name}" if here else name, item, depth + 1, units) for name, item in inner]
 
 
-def _branch(path: Path, here: str, value: _Object, skip: int, left_out: dict[str, str]) -> Branch:
-    units = _units(value)
+def _branch(
+    path: Path, here: str, value: _Object, skip: int, left_out: dict[str, str], units: dict[str, str]
+) -> Branch:
     leaves: list[Leaf] = []
     records: list[Records] = []
     for name, item in value.items():

@@ -18,7 +18,7 @@ from tethertest.readers.channels import unique_names
 from tethertest.readers.text.blocks import Integers, Parsed, RowPlan, parse_block
 from tethertest.readers.text.layout import Layout, find_layout
 from tethertest.readers.text.rows import Comment, RowBlock
-from tethertest.readers.text.stamps import time_zone_of
+from tethertest.readers.text.stamps import stamp_kind, time_zone_of
 from tethertest.readers.text.table import SPACES
 from tethertest.readers.text.textlog import Progress, TextBlock, TextLog, open_text
 from tethertest.readers.text.timeaxis import STATED_START, columns_named_time, find_time, read_counter
@@ -83,7 +83,8 @@ class TableLog:
     def _refuse_second_start(self, comments: Sequence[Comment]) -> None:
         """Refuse a comment among the rows that states when a recording began."""
         for item in comments:
-            if STATED_START.fullmatch(item.text):
+            match = STATED_START.fullmatch(item.text)
+            if match and stamp_kind(match[1]) is not None:
                 message = f"the comment {item.text!r} among the rows begins a second recording"
                 remedy = "save each recording in a file of its own"
                 raise FileFormatError(message, remedy, path=self.text.path, line=item.line)

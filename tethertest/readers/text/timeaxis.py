@@ -12,7 +12,7 @@ from typing import Final
 from tethertest.errors import FileFormatError
 from tethertest.readers.calibration import COLUMNS as CALIBRATION_COLUMNS
 from tethertest.readers.text.layout import Layout
-from tethertest.readers.text.stamps import parse_stamps
+from tethertest.readers.text.stamps import parse_stamps, stamp_kind
 from tethertest.readers.timeunits import SECONDS, calendar_start, epoch_start, is_time_name, unit_in_name
 from tethertest.records.run import Log
 
@@ -267,7 +267,7 @@ def _start_from_comments(
 ) -> tuple[dt.datetime | None, str]:
     for text in layout.comments:
         match = STATED_START.fullmatch(text)
-        if match:
+        if match and stamp_kind(match[1]) is not None:  # not such as "start: cold"
             stamps = parse_stamps([match[1]], path, [1], order)
             return stamps.start(zone), stamps.date_order
     return None, ""

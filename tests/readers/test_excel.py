@@ -355,3 +355,33 @@ def test_without_openpyxl_the_error_says_what_to_install(made, monkeypatch):
     path = made()
     monkeypatch.setitem(sys.modules, "openpyxl", None)
     refused(path, r"openpyxl that reads it is not installed\n.*pip install 'tethertest\[excel\]'")
+
+
+@pytest.mark.parametrize(
+    ("head", "form", "factor"),
+    [
+        ("strain [%]", "0.00%", 100.0),
+        ("F [kN]", "0.000,", 1e-3),
+        ("F [N]", "#,##0.00", 1.0),
+        ("F [N]", "0.0\\%", 1.0),
+        ("share", "0.00%", 1.0),
+    ],
+)
+def test_a_column_with_a_unit_is_read_as_it_is_shown(made, head, form, factor):
+    def fill(page):
+        filled(page, head=(("time [s]", head),), rows=zip(T.tolist(), F.tolist(), strict=True))
+        for (cell,) in page.iter_rows(min_row=2, min_col=2, max_col=2):
+            cell.number_format = form
+
+    log = read_log(made(fill))
+    np.testing.assert_allclose(log.channels[0].values, factor * F)
+    assert any("as it is shown" in remark for remark in log.remarks) == (factor != 1.0)
+
+
+def test_a_column_shown_in_two_scales_is_refused(made):
+    def fill(page):
+        filled(page, head=(("time [s]", "strain [%]"),), rows=zip(T.tolist(), F.tolist(), strict=True))
+        page.cell(5, 2).number_format = "0.00%"
+
+    with pytest.raises(FileFormatError, match="shown in per cent or thousands in some rows"):
+        read_log(made(fill))

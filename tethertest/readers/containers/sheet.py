@@ -17,12 +17,28 @@ from tethertest.readers.containers.workbook import Merged, checked_sheet, column
 _LITERAL: Final = re.compile(r'"[^"]*"|\\.|_.|\*.|\[(?!h+\]|m+\]|s+\])[^\]]*\]')
 
 
+#: commas behind the last digit of a format show thousands, millions, ...
+_THOUSANDS: Final = re.compile(r"[0#?](,+)(?!.*[0#?])")
+
+
 @dataclass(frozen=True, slots=True)
 class Dated:
     """A number that is shown as a date or a time of day."""
 
     value: float
     unit: str  #: one of the calendars, or a part of a day
+
+
+class Scaled(float):
+    """A number that is shown as another: per cent of it, or thousands."""
+
+    shown_as: float  #: what is shown is this many times the number
+
+    def __new__(cls, value: float, shown_as: float) -> Scaled:
+        """Return the number with what it is shown as."""
+        made = super().__new__(cls, value)
+        made.shown_as = shown_as
+        return made
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +107,17 @@ def _cell(cell: Any, units: dict[str, str], calendar: str) -> Cell:
     form = cell.number_format
     if form not in units:
         units[form] = date_unit(form, calendar)
-    return Dated(float(value), units[form]) if units[form] else value
+    if units[form]:
+        return Dated(float(value), units[form])
+    shown_as = shown_times(form)
+    return value if shown_as == 1.0 else Scaled(value, shown_as)
+
+
+def shown_times(form: str) -> float:
+    """Return what a number is multiplied by as it is shown: 100 in per cent, 0.001 in thousands."""
+    plain = _LITERAL.sub("", form.split(";", maxsplit=1)[0])
+    thousands = _THOUSANDS.search(plain)
+    return 100.0 ** plain.count("%") / 1000.0 ** (len(thousands[1]) if thousands else 0)
 
 
 def date_unit(form: str, calendar: str) -> str:

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tethertest.readers.containers.sheet import Cell, Dated, Sheet, Wrong
+from tethertest.readers.containers.sheet import Cell, Dated, Scaled, Sheet, Wrong
 from tethertest.readers.containers.table import Column, Table, listed
 from tethertest.readers.containers.workbook import column_name
 from tethertest.readers.text.cells import bare_unit, is_units_row, split_unit
@@ -210,8 +210,26 @@ def _column(sheet: Sheet, rows: range, column: int, name: str, unit: str) -> Col
     remark = f"column {name!r}: {', '.join(parts)} read as missing" if parts else ""
     if kinds == {_BOOLEAN}:
         remark = f"column {name!r} holds true and false, read as 1 and 0"
+    scale = _shown_scale(sheet, rows, column, name, cells) if unit else 1.0
+    if scale != 1.0:
+        values *= scale
+        shown = f"column {name!r} is read as it is shown, {scale:g} times what is stored"
+        remark = f"{remark}; {shown}" if remark else shown
     shown_as = kinds - {_BOOLEAN, ""}
     return Column(name, shown_as.pop() if shown_as else unit, values, remark)
+
+
+def _shown_scale(sheet: Sheet, rows: range, column: int, name: str, cells: Sequence[Cell]) -> float:
+    """Return what the numbers of a column with a unit are multiplied by as they are shown."""
+    scales = [
+        cell.shown_as if isinstance(cell, Scaled) else 1.0
+        for cell in cells
+        if isinstance(cell, int | float) and not isinstance(cell, bool)
+    ]
+    if len(set(scales)) > 1:
+        problem = f"{name!r} is shown in per cent or thousands in some rows and not in others"
+        raise sheet.error(problem, "give the whole column one number format", rows[0], column)
+    return scales[0] if scales else 1.0
 
 
 def _kind(cell: Cell) -> str:

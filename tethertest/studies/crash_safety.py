@@ -44,7 +44,13 @@ _FORKS.set_forkserver_preload(
     [
         *("tethertest.pipeline.ingest", "tethertest.cli.ingest", "tethertest.kernels.fields"),
         *("numba", "pandas", "pint", "pydantic", "nptdms", "h5py"),
-        *("scipy.signal", "scipy.interpolate", "scipy.fft"),
+        *(
+            "scipy.signal",
+            "scipy.interpolate",
+            "scipy.fft",
+            "scipy.ndimage",
+            "tethertest.studies.warmed",
+        ),
     ]
 )
 #: after so many kills the next ingest is let end, to see that it takes left-overs away

@@ -163,6 +163,13 @@ def test_a_waveform_over_milliseconds_is_in_seconds(write):
     np.testing.assert_allclose(time_of(log), [0.0, 0.01, 0.02, 0.03])
 
 
+def test_an_appended_recording_over_milliseconds_goes_on(write):
+    over = {"wf_increment": 10.0, "wf_xname": "Time", "wf_xunit_string": "ms"}
+    log = read_log(write(recorded((100, {**OWN, **over}), (50, later(1.0, **over)))))
+    np.testing.assert_allclose(time_of(log), np.arange(150) * 0.01, atol=1e-9)
+    assert log.remarks == ()
+
+
 def test_a_spectrum_is_no_time_series(write):
     stream = io.BytesIO()
     over = {"wf_increment": 0.5, "wf_xname": "Frequency", "wf_xunit_string": "Hz"}

@@ -94,7 +94,11 @@ def planned(path: Path, file: Any) -> Plan:
     )
     sources = []
     for channel, name, parts in zip(data, names, recorded, strict=True):
-        sources.append(_source(path, channel, clocks.get(channel.group_name), times, name, parts, start))
+        sources.append(
+            _source(
+                path, channel, clocks.get(channel.group_name), times[channel.group_name], name, parts, start
+            )
+        )
         if not len(channel):
             remarks.append(f"channel {name!r} has no samples")
         elif not sources[-1].clock and len(parts) > 1:
@@ -137,7 +141,7 @@ def _source(
     path: Path,
     channel: Any,
     clock: Clock | None,
-    times: dict[str, Any | None],
+    time: Any,
     name: str,
     parts: tuple[Recording, ...],
     start: np.datetime64 | None,
@@ -145,11 +149,9 @@ def _source(
     key = (channel.group_name, channel.name)
     unit = str(channel.properties.get("unit_string", "")).strip()
     if clock is not None:
-        time = times[channel.group_name]
-        if len(time) != len(channel):  # type: ignore[arg-type]
+        if len(time) != len(channel):
             message = (
-                f"channel {channel.name!r} has {len(channel)} samples, "
-                f"its time {time.name!r} has {len(time)}"  # type: ignore[union-attr, arg-type]
+                f"channel {channel.name!r} has {len(channel)} samples, its time {time.name!r} has {len(time)}"
             )
             raise FileFormatError(message, "export the log again", path=path)
         return Source(key, name, unit, clock.key)
@@ -164,7 +166,7 @@ def _source(
         if part.start is None and pieces:  # another rate, and nobody says since when
             last = pieces[-1]
             offset = last.offset + (part.first - last.first) * last.increment
-        pieces.append(Piece(part.first, offset, factor * part.increment))
+        pieces.append(Piece(part.first, offset, part.increment))
     return Source(key, name, unit, None, tuple(pieces))
 
 

@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from tethertest.errors import FileFormatError
+from tethertest.readers.formats.tdms_time import abscissa
 
 _EPOCH: Final = np.datetime64(0, "ns")
 #: sampling interval above which a property is damaged: a day [s]
@@ -71,7 +72,8 @@ def _recording(first: int, properties: Any) -> Recording:
         stamp = stamp.astype("datetime64[ns]")
     # a waveform without a clock has LabVIEW's zero, 1904
     known = stamp if stamp is not None and stamp > _EPOCH else None
-    return Recording(first, known, increment if increment <= _LONGEST else 0.0)
+    factor, _ = abscissa(properties)
+    return Recording(first, known, factor * increment if increment <= _LONGEST else 0.0)
 
 
 def _apart(name: str, said: list[Recording]) -> tuple[list[Recording], str]:

@@ -7,12 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tethertest.conditioning import drive_findings
 from tethertest.pipeline.across_runs import run_part
 from tethertest.pipeline.analysis_options import Options
 from tethertest.pipeline.analyze import analyze
-from tethertest.pipeline.conditioned import conditioned, read_logs
-from tethertest.readers import load_run
+from tethertest.pipeline.evaluation import open_evaluation
 
 DATASETS = Path(__file__).parents[2] / "datasets" / "rig3m"
 RIGS = Path(__file__).parents[2] / "rigs"
@@ -47,19 +45,17 @@ def test_healthy_load_cells_are_not_accused_where_no_motion_was_measured(tmp_pat
     file = folder / "run.toml"
     text = file.read_text(encoding="utf-8")
     file.write_text(text[: text.rindex("[[log]]")], encoding="utf-8")
-    run = load_run(folder, RIGS)
-    assert [log.file for log in run.file.log] == ["tension.asc", "fbg.txt"]
-    measured = conditioned(run, read_logs(run))
-    assert not [finding for finding in measured.findings if finding.kind == ACCUSED]
+    evaluation = open_evaluation(folder, Options(rigs=RIGS))
+    assert [log.file for log in evaluation.run.file.log] == ["tension.asc", "fbg.txt"]
+    assert not [finding for finding in evaluation.measured.findings if finding.kind == ACCUSED]
     part = run_part(folder, Options(rigs=RIGS))
     assert (part.amplitude, part.amplitude_measured) == (part.nominal_amplitude, False)
 
 
 def test_analyze_says_what_the_report_says_of_a_motion_that_is_not_as_stated(halved: Path) -> None:
-    run = load_run(halved, RIGS)
-    measured = conditioned(run, read_logs(run))
-    assert not [finding for finding in measured.findings if finding.kind == ACCUSED]
-    (said,) = drive_findings(run, measured, None)
+    evaluation = open_evaluation(halved, Options(rigs=RIGS))
+    assert not [finding for finding in evaluation.measured.findings if finding.kind == ACCUSED]
+    (said,) = evaluation.stated
     assert "radius is 0.1 m, heave moves by +/-0.05" in said.text
     assert f"run.toml: {said.text}" in analyze(halved, Options(rigs=RIGS, channels=("tension_top",))).notes
 

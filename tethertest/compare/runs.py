@@ -78,8 +78,9 @@ def compare(
     ]
     names += [name for name in LIMITED_CHANNELS if name not in names]
     drive = _drive_frequency(measured_lines)
-    if measured.steady is None or drive is None:
-        reason = f"{_missing(measured, drive)}; noise {_noise(measured)}"
+    missing = _missing(measured, replayed, drive)
+    if missing or measured.steady is None or drive is None:
+        reason = f"{missing}; noise {_noise(measured)}"
         open_ones = [metric for name in names for metric in _all_undecided(measured, name, limits, reason)]
         return without_drive(open_ones, measured.findings, reason)
     metrics: list[Metric] = []
@@ -183,8 +184,8 @@ def _drive_frequency(lines: Sequence[ChannelLines]) -> float | None:
     return None
 
 
-def _missing(measured: ConditionedRun, drive: float | None) -> str:
-    if not any(channel.kind == MOTION_KIND for channel in measured.channels):
+def _missing(measured: ConditionedRun, replayed: Sequence[Channel], drive: float | None) -> str:
+    if not replayed and not any(channel.kind == MOTION_KIND for channel in measured.channels):
         return "the bottom motion was not logged, so nothing was replayed; add the encoder's log to run.toml"
     if measured.steady is None:
         return "no drive: the run has no steady window"

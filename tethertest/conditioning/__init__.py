@@ -2,6 +2,6 @@
 
 from tethertest.conditioning.condition import condition
 from tethertest.conditioning.guide import Guide
-from tethertest.conditioning.stated import drive_findings, stated_findings
+from tethertest.conditioning.stated import stated_findings
 
-__all__ = ["Guide", "condition", "drive_findings", "stated_findings"]
+__all__ = ["Guide", "condition", "stated_findings"]

@@ -15,6 +15,10 @@ STATED_FREQUENCY = 0.02
 STATED_AMPLITUDE = 0.1
 #: kind of the finding that the motion is not as stated
 AMPLITUDE = "drive_amplitude"
+#: kind of the finding that a run moves although its file says that it does not
+NOT_STATED = "drive_not_stated"
+#: kind of the finding that a run may not validate the rig
+CALIBRATION = "calibration_run"
 #: half the range of motion above which a run is driven, whatever its file says [m]
 STANDS_STILL = 2e-3
 #: range between these quantiles: spikes and marker taps are left out
@@ -34,21 +38,6 @@ def stated_findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) 
         The drive as fitted.
     """
     return tuple(_findings(run, measured, drive))
-
-
-def drive_findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> tuple[Finding, ...]:
-    """Return what the run file states of the drive and the logs contradict.
-
-    Parameters
-    ----------
-    run : Run
-        The run file's drive.
-    measured : ConditionedRun
-        Its displacement is held against the stated amplitude.
-    drive : DriveFit or None
-        The drive as fitted.
-    """
-    return tuple(_of_drive(run, measured, drive))
 
 
 def stated_amplitude(run: Run) -> float | None:
@@ -81,7 +70,7 @@ def moves_otherwise(run: Run, heave: Channel | None, steady: Window | None) -> s
 def _findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> Iterator[Finding]:
     if run.file.purpose == "calibration":
         text = "its purpose is calibration: a run that identified the rig cannot validate it"
-        yield Finding("run.toml", "calibration_run", text, "fatal")
+        yield Finding("run.toml", CALIBRATION, text, "fatal")
     yield from _of_drive(run, measured, drive)
 
 
@@ -92,7 +81,7 @@ def _of_drive(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> Ite
         moved = None if heave is None else half_range(heave)
         if heave is not None and moved is not None and moved > STANDS_STILL:
             text = f'[drive] kind is "none", but {heave.name} moves by +/-{moved:.3g} m; correct [drive]'
-            yield Finding("run.toml", "drive_not_stated", text, "fatal")
+            yield Finding("run.toml", NOT_STATED, text, "fatal")
         return
     if drive is not None and stated.frequency is not None:
         error = drive.frequency / stated.frequency - 1.0
@@ -111,7 +100,8 @@ def _of_drive(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> Ite
 
 def bottom_displacement(channels: Iterable[Channel]) -> Channel | None:
     """Return the channel that shows the bottom motion, if one was logged."""
-    return next((channel for channel in channels if channel.kind == "displacement"), None)
+    moved = [channel for channel in channels if channel.kind == "displacement"]
+    return next((channel for channel in moved if channel.at in {0.0, None}), None)
 
 
 def half_range(heave: Channel) -> float | None:

@@ -10,24 +10,21 @@ from typing import Final
 
 import numpy as np
 
-from tethertest.conditioning import drive_findings
-from tethertest.conditioning.stated import AMPLITUDE
+from tethertest.conditioning.stated import AMPLITUDE, CALIBRATION, NOT_STATED
 from tethertest.errors import DataError, TethertestError
 from tethertest.pipeline.analysis_options import Options
 from tethertest.pipeline.analyze import analyze_run
-from tethertest.pipeline.conditioned import conditioned, read_logs
-from tethertest.pipeline.stored import run_of
-from tethertest.readers import load_run
+from tethertest.pipeline.evaluation import Evaluation, open_evaluation
 from tethertest.records.across import RunChannel, RunPart
-from tethertest.records.analysis import Analysis, ChannelAnalysis
-from tethertest.records.channel import Channel, ConditionedRun, Finding, Window
+from tethertest.records.analysis import ChannelAnalysis
+from tethertest.records.channel import Channel, Window
+from tethertest.records.lines import ChannelLines
 from tethertest.records.run import Run
 from tethertest.spectra import spectrum
-from tethertest.store import is_store, load_store
+from tethertest.store import is_store
 
 #: kinds of channels that get curves; the motion is the setting they are drawn against
 KINDS: Final = ("tension", "strain")
-_MOTION: Final = "heave"
 #: share of a window's samples that may be unusable before a channel's amplitude is shown and not judged
 _FEW_UNUSABLE: Final = 0.01
 #: a spectrum is kept up to this multiple of the drive
@@ -102,15 +99,9 @@ def run_part(path: Path, options: Options) -> RunPart:
     """Analyse one run folder or store, as far as curves need it."""
     part = RunPart(path.name, str(path))
     try:
-        if path.is_dir():
-            run = load_run(path, options.rigs)
-            part = _described(part, run)
-            measured = conditioned(run, read_logs(run))
-        else:
-            stored = load_store(path)
-            run, measured = run_of(stored.header, path), stored.measured
-            part = _described(part, run)
-        return _analysed(part, run, measured, options)
+        evaluation = open_evaluation(path, options)
+        part = _described(part, evaluation.run)
+        return _analysed(part, evaluation)
     except TethertestError as error:
         return replace(part, refused=error.problem)
 
@@ -131,48 +122,45 @@ def _described(part: RunPart, run: Run) -> RunPart:
     )
 
 
-def _analysed(part: RunPart, run: Run, measured: ConditionedRun, options: Options) -> RunPart:
-    remarks = _remarks(measured.findings)
-    part = replace(part, remarks=tuple(remarks), from_rest=measured.rest_before is not None)
-    if run.file.drive.kind == "none" and options.drive_frequency is None:
-        contradicted = "; ".join(finding.text for finding in drive_findings(run, measured, None))
+def _analysed(part: RunPart, evaluation: Evaluation) -> RunPart:
+    rest = evaluation.conditioned.rest_before
+    doubts = [finding for finding in evaluation.measured.findings if finding.severity != "note"]
+    remarks = [f"{finding.subject}: {finding.text}" for finding in doubts if finding.kind != CALIBRATION]
+    part = replace(part, remarks=tuple(remarks), from_rest=rest is not None)
+    if evaluation.nominal is None:
+        if evaluation.run.file.drive.kind != "none":
+            return replace(part, refused="no drive frequency: run.toml states none")
+        contradicted = "; ".join(finding.text for finding in doubts if finding.kind == NOT_STATED)
         return replace(part, refused=f"no drive: {contradicted}" if contradicted else "no drive")
-    if options.channels and measured.channel(_MOTION) is not None:
-        options = replace(options, channels=tuple(dict.fromkeys((*options.channels, _MOTION))))
+    asked = evaluation.options
     try:
-        analysis = analyze_run(part.path, run, measured, options)
+        analysis = analyze_run(part.path, evaluation, asked.channels, replay=asked.replay)
     except DataError as error:
-        if not options.replay:
+        if not asked.replay:
             raise
         remarks.append(f"not replayed: {error.problem}")
-        analysis = analyze_run(part.path, run, measured, replace(options, replay=False))
+        analysis = analyze_run(part.path, evaluation, asked.channels)
     if analysis.drive is None or analysis.window is None:
         return replace(part, refused="no drive frequency: run.toml states none")
-    stated = drive_findings(run, measured, analysis.drive)
     # a setting in doubt puts its run at a wrong place of a curve, or on a wrong one
-    doubt = "; ".join(finding.text for finding in stated if finding.kind == AMPLITUDE)
-    amplitude = _motion_amplitude(analysis)
+    doubt = "; ".join(finding.text for finding in evaluation.stated if finding.kind == AMPLITUDE)
+    amplitude = _motion_amplitude(evaluation.motion_lines)
     return replace(
         part,
         frequency=analysis.drive.frequency,
         amplitude=part.nominal_amplitude if amplitude is None else amplitude,
         amplitude_measured=amplitude is not None,
         channels=tuple(
-            _channel(item, measured.rest_before, analysis.window, analysis.drive.frequency, doubt)
+            _channel(item, rest, analysis.window, analysis.drive.frequency, doubt)
             for item in analysis.channels
             if item.channel.kind in KINDS
         ),
-        remarks=(*remarks, *_remarks(stated)),
+        remarks=tuple(remarks),
     )
 
 
-def _remarks(findings: Sequence[Finding]) -> list[str]:
-    return [f"{finding.subject}: {finding.text}" for finding in findings if finding.severity != "note"]
-
-
-def _motion_amplitude(analysis: Analysis) -> float | None:
-    motion = analysis.find(_MOTION)
-    line = motion.lines.line("1") if motion is not None and motion.lines is not None else None
+def _motion_amplitude(lines: ChannelLines | None) -> float | None:
+    line = None if lines is None else lines.line("1")
     return line.amplitude if line is not None and line.amplitude > 0.0 else None
 
 

@@ -9,15 +9,15 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from tethertest.errors import DataError, TethertestError
-from tethertest.pipeline.conditioned import conditioned, placed, read_logs
+from tethertest.errors import TethertestError
+from tethertest.pipeline.analysis_options import Options
+from tethertest.pipeline.evaluation import open_run
 from tethertest.pipeline.exports.csv import write_csv
 from tethertest.pipeline.exports.matlab import write_mat
 from tethertest.pipeline.exports.parquet import check_parquet, write_parquet
 from tethertest.pipeline.exports.sep005 import write_sep005
 from tethertest.pipeline.exports.source import Exported, SeriesInMemory, time_bases
 from tethertest.pipeline.stored import run_of, store_header
-from tethertest.readers import load_run
 from tethertest.store import is_store, open_store, written_whole
 from tethertest.store.whole import WholeFile
 
@@ -95,14 +95,11 @@ def _opened(path: Path, rigs: Path | None) -> Iterator[Exported]:
     if path.is_file() and path.name != "run.toml":
         message = "found a file that is no run store"
         raise TethertestError(message, "name a run folder, or a run store as ingest writes it", path=path)
-    run = load_run(path, rigs)
-    logs = read_logs(run)
-    try:
-        measured = conditioned(run, logs)
-    except DataError as error:
-        raise placed(error, run) from error
-    series = tuple(SeriesInMemory(channel) for channel in measured.channels)
-    yield Exported(run.file.id, run.file.title, run.file.date, store_header(run, logs), series)
+    evaluation = open_run(path, Options(rigs=rigs))
+    with evaluation.errors_placed():
+        series = tuple(SeriesInMemory(channel) for channel in evaluation.conditioned.channels)
+    run = evaluation.run
+    yield Exported(run.file.id, run.file.title, run.file.date, store_header(run, evaluation.logs), series)
 
 
 def _check_target(target: Path, source: Path) -> None:

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from tethertest.errors import DataError, TethertestError
-from tethertest.pipeline.conditioned import conditioned, placed
+from tethertest.errors import TethertestError
+from tethertest.pipeline.analysis_options import Options
+from tethertest.pipeline.evaluation import Evaluation, open_run
 from tethertest.pipeline.long_runs.columns import Sizes
 from tethertest.pipeline.long_runs.ingest import Progress, Sources, ingest_long
 from tethertest.pipeline.long_runs.pieces import pieces_of
 from tethertest.pipeline.stored import store_header
-from tethertest.readers import load_run, read_log
+from tethertest.readers import read_log
 from tethertest.records.channel import Finding
 from tethertest.records.run import Run
 from tethertest.store import is_store, write_store
@@ -71,30 +72,30 @@ def ingest_run(
     TethertestError
         Anything in the files that the user can mend, or a store that cannot be written there.
     """
-    run = load_run(folder, rigs)
+    evaluation = open_run(folder, Options(rigs=rigs))
+    run = evaluation.run
     target = default_store(run.folder) if output is None else output
     check_target(target, run)
-    try:
-        samples, findings = _ingested(run, target, largest, progress)
-    except DataError as error:
-        raise placed(error, run) from error
+    with evaluation.errors_placed():
+        samples, findings = _ingested(evaluation, target, largest, progress)
     severities = [finding.severity for finding in findings]
     counts = {severity: severities.count(severity) for severity in dict.fromkeys(severities)}
     return Ingested(run.file.id, target, target.stat().st_size, samples, counts)
 
 
 def _ingested(
-    run: Run, target: Path, largest: int, progress: Progress
+    evaluation: Evaluation, target: Path, largest: int, progress: Progress
 ) -> tuple[dict[str, int], Sequence[Finding]]:
     """Write the store, and return samples by channel and the findings."""
+    run = evaluation.run
     long = {log.key: run.folder / log.file for log in run.file.log if _size(run.folder / log.file) > largest}
-    whole = {log.key: read_log(run.folder / log.file, log) for log in run.file.log if log.key not in long}
     if long:
+        whole = {log.key: read_log(run.folder / log.file, log) for log in run.file.log if log.key not in long}
         pieces = {log.key: pieces_of(long[log.key], log) for log in run.file.log if log.key in long}
         sources = Sources(whole, pieces)
         return ingest_long(run, sources, target, partial(store_header, run), progress, Sizes())
-    measured = conditioned(run, whole)
-    write_store(target, store_header(run, whole), measured)
+    measured = evaluation.conditioned
+    write_store(target, store_header(run, evaluation.logs), measured)
     return {channel.name: channel.time.size for channel in measured.channels}, measured.findings
 
 

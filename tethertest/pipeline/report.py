@@ -2,54 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
-from tethertest.compare import compare
-from tethertest.conditioning import stated_findings
-from tethertest.errors import DataError
-from tethertest.pipeline.analysis_options import FALSE_LINES_OF_RUN
-from tethertest.pipeline.conditioned import conditioned, placed, read_logs
-from tethertest.pipeline.expect import expectation
+from tethertest.pipeline.analysis_options import Options
+from tethertest.pipeline.evaluation import Evaluation, open_run
 from tethertest.pipeline.provenance import provenance
-from tethertest.pipeline.run_drive import MOTION, drive_channels, run_crank, run_drive
-from tethertest.readers import load_prototype_of, load_run
-from tethertest.records.channel import Channel, ConditionedRun, RawLog, Window
-from tethertest.records.lines import ChannelLines, DriveFit, Event
+from tethertest.readers import load_prototype_of
+from tethertest.records.analysis import REPLAYED, ChannelAnalysis
+from tethertest.records.lines import Event
 from tethertest.records.report import Report
-from tethertest.records.response import Response
 from tethertest.records.rig import Prototype
-from tethertest.records.run import Run
-from tethertest.records.scene import Scene
 from tethertest.records.similarity import Similarity
-from tethertest.replay import (
-    BottomMotion,
-    bottom_motion,
-    replayed_channels,
-    rest_tensions,
-    run_scene,
-    variations,
-)
 from tethertest.similitude import similarity
-from tethertest.solver import FIRST_MESH, solve
-from tethertest.spectra import find_events, find_lines
-
-#: finest mesh of a replay; a snap on the rig is not better known than this
-_FINEST_MESH = 40
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Replay:
-    """The replayed side of a run."""
-
-    scene: Scene
-    motion: BottomMotion
-    response: Response
-    channels: tuple[Channel, ...]
-    moved: tuple[tuple[Channel, ...], ...]  #: nominal first, then one parameter moved at a time
 
 
 def make_report(folder: Path, rigs: Path | None = None) -> Report:
@@ -67,130 +32,47 @@ def make_report(folder: Path, rigs: Path | None = None) -> Report:
     TethertestError
         Anything in the files that the user can mend.
     """
-    run = load_run(folder, rigs)
-    prototype = load_prototype_of(run.rig, run.rig_path)
-    logs = read_logs(run)
-    try:
-        return _reported(run, prototype, logs)
-    except DataError as error:
-        raise placed(error, run) from error
+    evaluation = open_run(folder, Options(rigs=rigs))
+    prototype = load_prototype_of(evaluation.run.rig, evaluation.run.rig_path)
+    with evaluation.errors_placed():
+        return _reported(evaluation, prototype)
 
 
-def _reported(run: Run, prototype: Prototype | None, logs: Mapping[str, RawLog]) -> Report:
-    measured = conditioned(run, logs)
-    drive = _drive(run, measured)
-    measured = replace(measured, findings=(*measured.findings, *stated_findings(run, measured, drive)))
-    replayed = _replay(run, measured, drive)
-    lines, replayed_lines = _lines(run, measured, replayed, drive)
-    comparison = compare(
-        measured,
-        replayed.channels if replayed else (),
-        lines,
-        replayed_lines,
-        run.rig.limits,
-        variations=replayed.moved if replayed else (),
-        static=rest_tensions(run.rig),
-    )
-    if replayed is not None:
-        first, *others = comparison.reasons
-        comparison = replace(comparison, reasons=(first, *replayed.response.warnings, *others))
+def _reported(evaluation: Evaluation, prototype: Prototype | None) -> Report:
+    channels, replayed = evaluation.conditioned.channels, evaluation.replayed
     return Report(
-        run=run,
-        measured=measured,
-        response=replayed.response if replayed else None,
-        replayed=replayed.channels if replayed else (),
-        drive=drive,
-        measured_lines=lines,
-        replayed_lines=replayed_lines,
-        events=_events(measured.channels),
-        replayed_events=_events(replayed.channels if replayed else ()),
-        comparison=comparison,
-        similarity=_similarity(run, prototype, drive),
-        provenance=provenance(run, logs, _settings(replayed)),
+        run=evaluation.run,
+        measured=evaluation.measured,
+        response=evaluation.response,
+        replayed=replayed,
+        drive=evaluation.drive,
+        measured_lines=evaluation.lines(channels),
+        replayed_lines=evaluation.lines(replayed, REPLAYED),
+        events=_events([evaluation.found(channel) for channel in channels]),
+        replayed_events=_events([evaluation.found(channel, REPLAYED) for channel in replayed]),
+        comparison=evaluation.comparison,
+        similarity=_similarity(evaluation, prototype),
+        provenance=provenance(evaluation.run, evaluation.logs, _settings(evaluation)),
     )
 
 
-def _drive(run: Run, measured: ConditionedRun) -> DriveFit | None:
-    if run.file.drive.kind == "none" or run.file.drive.frequency is None or measured.steady is None:
-        return None
-    return run_drive(measured, drive_channels(measured), measured.steady, run.file.drive.frequency)
+def _events(found: Sequence[ChannelAnalysis]) -> tuple[Event, ...]:
+    return tuple(event for item in found for event in item.events)
 
 
-def _replay(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> _Replay | None:
-    heave = measured.channel(MOTION)
-    if heave is None:
-        return None
-    motion = bottom_motion(
-        heave,
-        frequency=None if drive is None else drive.frequency,
-        rest_before=measured.rest_before,
-        steady=measured.steady,
-    )
-    scene = run_scene(run, motion.duration)
-    response = solve(scene, measured=motion.motion, finest=_FINEST_MESH)
-    channels = replayed_channels(response, motion.start, measured.channels)
-    moved: tuple[tuple[Channel, ...], ...] = ()
-    if drive is not None:
-        coarser = max(FIRST_MESH, response.cells // 2)
-        varied = variations(run, motion, measured.channels, coarser, response.fidelity)
-        moved = tuple(variation.channels for variation in varied)
-    return _Replay(scene, motion, response, channels, moved)
-
-
-def _lines(
-    run: Run, measured: ConditionedRun, replayed: _Replay | None, drive: DriveFit | None
-) -> tuple[tuple[ChannelLines, ...], tuple[ChannelLines, ...]]:
-    if drive is None or measured.steady is None or replayed is None:
-        return (), ()
-    window = measured.steady
-    scene = replayed.scene
-    heave = measured.channel(MOTION)
-    crank = run_crank(measured, window, drive)
-    motion = None
-    found: list[ChannelLines] = []
-    if heave is not None:
-        told = expectation(run, scene, heave, drive.frequency, None)
-        motion = find_lines(heave, window, drive, told, crank=crank)
-        found.append(motion)
-
-    def search(channels: tuple[Channel, ...]) -> tuple[ChannelLines, ...]:
-        searched = [c for c in channels if c.kind in {"tension", "strain"} and _covers(c, window)]
-        return tuple(
-            find_lines(
-                channel,
-                window,
-                drive,
-                expectation(run, scene, channel, drive.frequency, motion),
-                significance=FALSE_LINES_OF_RUN / len(searched),
-                crank=crank,
-            )
-            for channel in searched
-        )
-
-    return (*found, *search(measured.channels)), search(replayed.channels)
-
-
-def _covers(channel: Channel, window: Window) -> bool:
-    part = channel.between(window.start, window.stop)
-    return bool(np.count_nonzero(part.usable) > 0.5 * window.length * channel.rate)
-
-
-def _events(channels: tuple[Channel, ...]) -> tuple[Event, ...]:
-    return tuple(event for channel in channels if channel.kind == "tension" for event in find_events(channel))
-
-
-def _similarity(run: Run, prototype: Prototype | None, drive: DriveFit | None) -> Similarity | None:
-    frequency = drive.frequency if drive is not None else run.file.drive.frequency
-    amplitude = run.file.drive.radius or run.file.drive.amplitude
+def _similarity(evaluation: Evaluation, prototype: Prototype | None) -> Similarity | None:
+    drive = evaluation.run.file.drive
+    frequency = drive.frequency if evaluation.drive is None else evaluation.drive.frequency
+    amplitude = drive.radius or drive.amplitude
     if prototype is None or frequency is None or not amplitude:
         return None
-    return similarity(run.rig, prototype, frequency, amplitude, run.file.platform.mode)
+    return similarity(evaluation.run.rig, prototype, frequency, amplitude, evaluation.run.file.platform.mode)
 
 
-def _settings(replayed: _Replay | None) -> dict[str, str]:
-    if replayed is None:
+def _settings(evaluation: Evaluation) -> dict[str, str]:
+    if evaluation.motion is None:
         return {}
     return {
-        "motion cut-off": f"{replayed.motion.cutoff:.4g} Hz",
-        "motion cut-off where sudden": f"{replayed.motion.wide_cutoff:.4g} Hz",
+        "motion cut-off": f"{evaluation.motion.cutoff:.4g} Hz",
+        "motion cut-off where sudden": f"{evaluation.motion.wide_cutoff:.4g} Hz",
     }

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tethertest.conditioning import condition, drive_findings, stated_findings
+from tethertest.conditioning import condition, stated_findings
 from tethertest.records.lines import DriveFit
 from tethertest.records.run import Drive
 
@@ -43,4 +43,3 @@ def test_a_calibration_run_validates_nothing(bench):
     assert [(item.kind, item.severity) for item in stated_findings(run, conditioned, RAN)] == [
         ("calibration_run", "fatal")
     ]
-    assert drive_findings(run, conditioned, RAN) == ()

@@ -114,5 +114,4 @@ def _amplitudes(line: Line, replayed: ChannelLines | None, scale: Scale, finest:
 
 def _verdict(line: Line, *, badge: bool = False) -> Cell:
     tone = "quiet" if line.verdict in _QUIET else "doubtful" if line.verdict in _DOUBTFUL else "strong"
-    drive = line.order == "1" and line.verdict is LineVerdict.HARMONIC
-    return Cell("drive" if drive else words(line.verdict.value), line.reason, tone, badge)
+    return Cell(words(line.verdict.value), line.reason, tone, badge)

@@ -5,9 +5,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tethertest.readers import load_scene
+    from tethertest.api import analyze, condition, read_log, report, scale
+    from tethertest.errors import TethertestError
+    from tethertest.readers import load_prototype, load_rig, load_run, load_scene
     from tethertest.records.cable import Air, Cable
-    from tethertest.records.scene import Accuracy, Bottom, Geometry, Output, Scene, Top
+    from tethertest.records.scene import (
+        Accuracy,
+        Bottom,
+        Geometry,
+        MeasuredMotion,
+        Output,
+        Scene,
+        Top,
+        WindSeries,
+    )
+    from tethertest.records.similarity import Variable
+    from tethertest.similitude import pi_groups
     from tethertest.solver import solve
 
 __version__ = "0.1.0"
@@ -18,21 +31,38 @@ __all__ = [
     "Bottom",
     "Cable",
     "Geometry",
+    "MeasuredMotion",
     "Output",
     "Scene",
+    "TethertestError",
     "Top",
+    "Variable",
+    "WindSeries",
     "__version__",
+    "analyze",
+    "condition",
+    "load_prototype",
+    "load_rig",
+    "load_run",
     "load_scene",
+    "pi_groups",
+    "read_log",
+    "report",
+    "scale",
     "solve",
 ]
 
+_SCENE = ("Accuracy", "Bottom", "Geometry", "MeasuredMotion", "Output", "Scene", "Top", "WindSeries")
 #: name -> module that has it, imported when it is first asked for: the command line must start fast
 _HOMES = {
-    "load_scene": "tethertest.readers",
+    **dict.fromkeys(("analyze", "condition", "read_log", "report", "scale"), "tethertest.api"),
+    **dict.fromkeys(("load_prototype", "load_rig", "load_run", "load_scene"), "tethertest.readers"),
+    **dict.fromkeys(_SCENE, "tethertest.records.scene"),
+    **dict.fromkeys(("Air", "Cable"), "tethertest.records.cable"),
+    "TethertestError": "tethertest.errors",
+    "Variable": "tethertest.records.similarity",
+    "pi_groups": "tethertest.similitude",
     "solve": "tethertest.solver",
-    "Air": "tethertest.records.cable",
-    "Cable": "tethertest.records.cable",
-    **dict.fromkeys(("Accuracy", "Bottom", "Geometry", "Output", "Scene", "Top"), "tethertest.records.scene"),
 }
 
 

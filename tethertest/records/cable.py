@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from tethertest.records.checked import check_types
 from tethertest.records.quantity import SI
 
 LengthState = Literal["unstretched", "equilibrium"]
@@ -23,6 +24,9 @@ class Cable:
     axial_damping_time: Annotated[float, SI("s", minimum=0.0)] | None = None  #: Kelvin-Voigt; None is unknown
     bending_stiffness: Annotated[float, SI("N m^2", minimum=0.0)] = 0.0
 
+    def __post_init__(self) -> None:
+        check_types(self)
+
 
 @dataclass(frozen=True, slots=True)
 class Air:
@@ -34,6 +38,9 @@ class Air:
     wind: Annotated[float, SI("m/s")] | tuple[Annotated[float, SI("m/s")], ...] = 0.0
     wind_file: str | None = None
 
+    def __post_init__(self) -> None:
+        check_types(self)
+
 
 @dataclass(frozen=True, slots=True)
 class PlatformMode:
@@ -41,6 +48,9 @@ class PlatformMode:
 
     hover_stiffness: Annotated[float, SI("N/m", minimum=0.0)] = 0.0
     hover_damping: Annotated[float, SI("N s/m", minimum=0.0)] = 0.0
+
+    def __post_init__(self) -> None:
+        check_types(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,3 +64,6 @@ class Platform:
         tuple[Annotated[float, SI("m^2", minimum=0.0)], Annotated[float, SI("m^2", minimum=0.0)]] | None
     ) = None
     tilt: Annotated[float, SI("rad")] = 0.0
+
+    def __post_init__(self) -> None:
+        check_types(self)

@@ -7,13 +7,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntFlag
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray, FlagArray, FloatArray, frozen
+from tethertest.records.frames import drawn, series, table
 from tethertest.signal.series import sampling_interval
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tethertest.records.frames import Axes
 
 
 class Flag(IntFlag):
@@ -54,6 +60,14 @@ class RawChannel:
     flags: FlagArray | None = None  #: (n,) `Flag` bits that only the file itself could tell, if there are any
     as_written: FloatArray | None = None  #: (n,) where the reader put values of gratings into other columns
 
+    def to_pandas(self) -> pd.Series[float]:
+        """Return the values as written, over the logger's own time [s]."""
+        return series(self.time, self.values, self.name, self.unit)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the values as written, and return the axes."""
+        return drawn(axes, [(self.time, self.values, self.name)], f"as written [{self.unit or 'no unit'}]")
+
 
 class Fingerprint(Protocol):
     """What tells the file of a log from any other."""
@@ -82,6 +96,28 @@ class RawLog:
     reason: str = ""  #: why this reader was chosen
     row_lines: tuple[tuple[int, int], ...] = ()  #: row and its line, from 1, where lines do not just follow
     fingerprint: Fingerprint | None = None  #: None where a reader was called by itself
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return all samples as logged, one a row: stamps may repeat, go back and differ between channels.
+
+        The columns are ``channel``, ``time_s``, ``value`` and ``unit``.
+        """
+        import pandas as pd
+
+        parts = [
+            pd.DataFrame({"channel": c.name, "time_s": c.time, "value": c.values, "unit": c.unit})
+            for c in self.channels
+        ]
+        return (
+            pd.concat(parts, ignore_index=True)
+            if parts
+            else table([], ["channel", "time_s", "value", "unit"])
+        )
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw all channels as written, and return the axes."""
+        lines = [(channel.time, channel.values, channel.name) for channel in self.channels]
+        return drawn(axes, lines, "as written")
 
     def line_of(self, row: int) -> int | None:
         """Return the line of the file in which a row (from 0) stands; None where the reader does not say."""
@@ -152,6 +188,15 @@ class Channel:
         """(n,) True where a sample may enter an analysis."""
         usable: BoolArray = np.isfinite(self.values) & ((self.flags & np.uint16(UNUSABLE)) == 0)
         return usable
+
+    def to_pandas(self) -> pd.Series[float]:
+        """Return the usable values over time [s]; what no analysis uses is NaN."""
+        return series(self.time, np.where(self.usable, self.values, np.nan), self.name, self.unit)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the usable values over time, and return the axes."""
+        values = np.where(self.usable, self.values, np.nan)
+        return drawn(axes, [(self.time, values, self.name)], f"{self.kind} [{self.unit}]")
 
     def flag_counts(self) -> dict[str, int]:
         """Return the number of samples per flag, without zeros, by lower-case name."""
@@ -251,6 +296,21 @@ class ConditionedRun:
     def channel(self, name: str) -> Channel | None:
         """Return the channel of that sensor, if the run has it."""
         return next((channel for channel in self.channels if channel.name == name), None)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the usable values, a column a channel, over the run's time [s].
+
+        Channels keep their own times: where one has no sample at a time of another, there is NaN.
+        """
+        import pandas as pd
+
+        return pd.concat([channel.to_pandas() for channel in self.channels], axis="columns").sort_index()
+
+    def plot(self, axes: Axes | None = None, kind: str = "tension") -> Axes:
+        """Draw all channels of one kind, and return the axes."""
+        shown = [channel for channel in self.channels if channel.kind == kind]
+        lines = [(c.time, np.where(c.usable, c.values, np.nan), c.name) for c in shown]
+        return drawn(axes, lines, f"{kind} [{shown[0].unit}]" if shown else kind)
 
 
 def findings_about(findings: Sequence[Finding], subject: str) -> tuple[Finding, ...]:

@@ -5,9 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from dataclasses import field as a_field
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from tethertest.records.arrays import FloatArray
+from tethertest.records.frames import drawn
 from tethertest.records.scene import Scene
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tethertest.records.frames import Axes
 
 
 class Status(Enum):
@@ -94,6 +101,20 @@ class Response:
     numbers: dict[str, float] = a_field(default_factory=dict)
     native_times: bool = False  #: `time` holds the scheme's own levels, not t = k/rate
     snap: SnapPeak | None = None  #: of the nonlinear model, where the cable goes slack
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return tension and strain at the gauges over time [s], named as in the CSV: ``tension_N@0.25``."""
+        import pandas as pd
+
+        gauges = [f"{gauge:g}" for gauge in self.gauges]
+        named = (("tension_N", self.tension), ("strain", self.strain))
+        columns = {f"{name}@{g}": values[:, i] for name, values in named for i, g in enumerate(gauges)}
+        return pd.DataFrame(columns, pd.Index(self.time, name="time_s"))
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the tension at every gauge, and return the axes."""
+        lines = [(self.time, self.tension[:, i], f"at {gauge:g}") for i, gauge in enumerate(self.gauges)]
+        return drawn(axes, lines, "tension [N]")
 
 
 @dataclass(frozen=True, slots=True)

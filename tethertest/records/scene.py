@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
+import numpy as np
+
+from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Air, Cable
+from tethertest.records.checked import check_types
 from tethertest.records.quantity import SI
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Length = Annotated[float, SI("m")]
 Damping = Annotated[float, SI("N s/m", minimum=0.0)]
@@ -23,6 +30,9 @@ class Geometry:
     kind: Literal["shallow", "straight", "vertical", "ends", "hovering"]
     tension: Annotated[float, SI("N", above=0.0)] | None = None
     top: tuple[Length, ...] | None = None
+
+    def __post_init__(self) -> None:
+        check_types(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +53,9 @@ class Bottom:
     displacement_column: str | None = None
     unit: str | None = None
 
+    def __post_init__(self) -> None:
+        check_types(self)
+
 
 @dataclass(frozen=True, slots=True)
 class Top:
@@ -57,6 +70,9 @@ class Top:
     drag_area: tuple[Area, Area] | None = None
     tilt: Annotated[float, SI("rad")] = 0.0
 
+    def __post_init__(self) -> None:
+        check_types(self)
+
 
 @dataclass(frozen=True, slots=True)
 class Output:
@@ -67,12 +83,18 @@ class Output:
     gauges: tuple[Annotated[float, SI("1", minimum=0.0, maximum=1.0)], ...]
     fields: tuple[FieldName, ...] = ()
 
+    def __post_init__(self) -> None:
+        check_types(self)
+
 
 @dataclass(frozen=True, slots=True)
 class Accuracy:
     """Relative error wanted in the gauges' tension (RMS over the record, of the dynamic part)."""
 
     tolerance: Annotated[float, SI("1", above=0.0, maximum=1.0)] = 0.01
+
+    def __post_init__(self) -> None:
+        check_types(self)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,6 +103,31 @@ class MeasuredMotion:
 
     time: FloatArray  #: (n,) [s], strictly increasing
     displacement: FloatArray  #: (n,) [m] along the direction of the motion, from rest
+
+    @classmethod
+    def of_series(cls, series: pd.Series[float]) -> MeasuredMotion:
+        """Return the motion that a pandas Series holds; time and displacement count from its first row.
+
+        Parameters
+        ----------
+        series : pandas.Series
+            Displacement [m] over an index of seconds, durations or dates.
+
+        Raises
+        ------
+        DataError
+            The index is no time, or the values are no numbers.
+        """
+        index = series.index
+        if index.dtype.kind in "mM":
+            time = (index - index[0]) / np.timedelta64(1, "s")
+        elif index.dtype.kind in "iuf" and series.dtype.kind in "iuf":
+            time = index - index[0]
+        else:
+            message = f"found a series of {series.dtype} over {index.dtype}, expected metres over seconds"
+            raise DataError(message, "give displacements in m as numbers, over seconds, durations or dates")
+        values = series.to_numpy(dtype=np.float64)
+        return cls(np.asarray(time, dtype=np.float64), values - values[0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,3 +151,6 @@ class Scene:
     air: Air | None = None
     accuracy: Accuracy = Accuracy()
     gravity: Annotated[float, SI("m/s^2", minimum=0.0)] = 9.80665
+
+    def __post_init__(self) -> None:
+        check_types(self)

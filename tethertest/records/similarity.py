@@ -4,6 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from tethertest.records.frames import axes_or_new, table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tethertest.records.frames import Axes
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,3 +46,18 @@ class Similarity:
     conflicts: tuple[tuple[str, ...], ...]  #: minimal sets of demands that cannot hold together
     rank: int
     remarks: tuple[str, ...] = ()
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the groups, one a row, with their values at both scales and how far they are from alike."""
+        columns = ("name", "model", "prototype", "ratio", "level", "meaning")
+        return table([{key: getattr(group, key) for key in columns} for group in self.groups], columns)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the groups of the model over those of the prototype, 1 where they match; return the axes."""
+        used = axes_or_new(axes)
+        known = {group.name: group.ratio for group in self.groups if group.ratio is not None}
+        used.plot(list(known.values()), list(known), "o")
+        used.set_xscale("log")
+        used.axvline(1.0, color="0.3", linewidth=1.0)
+        used.set_xlabel("group of the model over that of the prototype [1]")
+        return used

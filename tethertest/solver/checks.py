@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import is_dataclass
 from functools import cache
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -22,7 +22,7 @@ _FEWEST_ROWS = 4
 
 
 def check_scene(scene: Scene, measured: MeasuredMotion | None, wind: WindSeries | None) -> None:
-    """Refuse numbers out of range, words that no key has, and series that do not cover the record.
+    """Refuse numbers out of range, and series that do not cover the record.
 
     Raises
     ------
@@ -57,17 +57,13 @@ def _problems(kind: Any, record: Any, path: str) -> Iterator[tuple[str, str, str
 def _checked(hint: Any, value: Any, key: str, name: str) -> Iterator[tuple[str, str, str]]:
     if is_dataclass(value):
         yield from _problems(type(value), value, f"{key}.")
-    elif isinstance(value, str):
-        words = [word for word in _parts(hint) if isinstance(word, str)]
-        if words and value not in words:
-            yield key, repr(value), f"one of {', '.join(words)}"
     elif isinstance(value, tuple | list):
         if (name in _VECTORS or key == "geometry.top") and len(value) not in {2, 3}:
             yield key, f"a vector of {len(value)}", "2 or 3 components"
         for entry in value:
             yield from _checked(hint, entry, key, "")
     elif isinstance(value, float | int) and not isinstance(value, bool):
-        yield from _bounded(next((part for part in _parts(hint) if isinstance(part, SI)), None), value, key)
+        yield from _bounded(next(_parts(hint), None), value, key)
 
 
 def _bounded(bound: SI | None, value: float, key: str) -> Iterator[tuple[str, str, str]]:
@@ -83,12 +79,10 @@ def _bounded(bound: SI | None, value: float, key: str) -> Iterator[tuple[str, st
         yield key, found, f"at most {bound.maximum:g}{unit}"
 
 
-def _parts(hint: Any) -> Iterator[Any]:
-    """Yield the bounds and words anywhere in an annotation."""
+def _parts(hint: Any) -> Iterator[SI]:
+    """Yield the bounds anywhere in an annotation."""
     if get_origin(hint) is Annotated:
         yield from (extra for extra in get_args(hint)[1:] if isinstance(extra, SI))
-    elif get_origin(hint) is Literal:
-        yield from get_args(hint)
     else:
         for inner in get_args(hint):
             yield from _parts(inner)

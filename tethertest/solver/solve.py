@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -22,13 +22,16 @@ from tethertest.solver.problem import Problem
 from tethertest.solver.spread import Spread, slack_spread
 from tethertest.solver.statics.equilibrium import rest_tension
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 Fidelity = Literal["auto", "catenary", "linear", "nonlinear"]
 
 
 def solve(
     scene: Scene,
     *,
-    measured: MeasuredMotion | None = None,
+    measured: MeasuredMotion | pd.Series[float] | None = None,
     wind: WindSeries | None = None,
     fidelity: Fidelity = "auto",
     scheme: LinearScheme = "auto",
@@ -44,8 +47,9 @@ def solve(
     ----------
     scene : Scene
         What is to be solved.
-    measured : MeasuredMotion, optional
-        Bottom displacement, for ``motion = "measured"``; the velocity is made consistent with it.
+    measured : MeasuredMotion or pandas.Series, optional
+        Bottom displacement, for ``motion = "measured"``; the velocity is made consistent with it. A pandas
+        Series is taken as `MeasuredMotion.of_series` does.
     wind : WindSeries, optional
         Gusts, in place of the scene's steady wind.
     fidelity : {"auto", "catenary", "linear", "nonlinear"}
@@ -80,14 +84,19 @@ def solve(
     if not 0.0 < wanted <= 1.0:
         message = f"found a tolerance of {wanted:g}, expected more than 0 and at most 1"
         raise DataError(message, "give a relative error such as 0.01")
-    check_scene(scene, measured, wind)
+    motion = (
+        measured
+        if measured is None or isinstance(measured, MeasuredMotion)
+        else MeasuredMotion.of_series(measured)
+    )
+    check_scene(scene, motion, wind)
     if wind is None and scene.air is not None and scene.air.wind_file is not None:
         message = f"scene {scene.name!r}: its wind is in a file that has not been read"
         raise DataError(message, "give solve(scene, wind=read_wind(scene)), or leave out [air] wind_file")
-    problem = Problem(scene, wanted, measured, wind, cells, finest, native_times=native_times)
+    problem = Problem(scene, wanted, motion, wind, cells, finest, native_times=native_times)
     if problem.sudden:
         problem = replace(problem, rest=rest_tension(scene))
-    numbers = scene_numbers(scene, measured)
+    numbers = scene_numbers(scene, motion)
     chosen = _chosen(problem, numbers, fidelity, scheme)
     refined = chosen.refined
     slack = refined.fidelity == "nonlinear" and goes_slack(refined.solution)

@@ -128,7 +128,6 @@ GUST = WindSeries(np.array([0.0, 2.0, 2.5, 6.0]), np.zeros((4, 3)))
         ({"output": Output(6.0, 100.0, ())}, {}, "gauges is empty"),
         ({"output": Output(-1.0, 100.0, (1.0,))}, {}, "output.duration"),
         ({"gravity": -9.8}, {}, "gravity"),
-        ({"geometry": Geometry("foo")}, {}, "geometry.kind"),  # type: ignore[arg-type]
         ({"cable": replace(SCENE.cable, length=float("nan"))}, {}, "finite"),
         ({"bottom": replace(HEAVE, direction=(1.0,))}, {}, "2 or 3 components"),
         ({"bottom": Bottom("measured")}, {"measured": MeasuredMotion(TIME[::-1], TIME)}, "backwards"),

@@ -52,23 +52,31 @@ def test_one_scene_becomes_table_figure_and_json(
 ) -> None:
     scene = tmp_path / "short.toml"
     scene.write_text(SCENE, encoding="utf-8")
-    code, out, err = typed([str(scene), "-o", str(tmp_path), "--json"], monkeypatch, capsys)
+    code, out, err = typed([str(scene), "-o", str(tmp_path / "found"), "--json"], monkeypatch, capsys)
     assert code == 0
     found = json.loads(out)
     assert [entry["scene"] for entry in found["scenes"]] == ["short"]
     assert found["scenes"][0]["reference_kind"] == "closed form"
     assert found["scenes"][0]["chosen"]["run"]["error"] < 1e-3
-    assert found["targets"] == found["peers"] == found["stability"] == []
-    folder = tmp_path / "speed-vs-error"
+    folder = tmp_path / "found"
     assert {path.name for path in folder.iterdir()} == {"README.md", "speed.csv", "speed.json", "speed.png"}
     assert "Written by `tethertest bench short.toml`" in (folder / "README.md").read_text(encoding="utf-8")
     assert len(err.splitlines()) == 4
 
 
-def test_no_scene_to_be_found_is_said(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_scenes_must_be_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     code, _, err = typed([], monkeypatch, capsys)
     assert code == 2
-    assert "rigs/scenes" in err
+    assert "Missing argument 'scenes'" in err
+
+
+def test_a_missing_peer_is_told_before_anything_is_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = tmp_path / "short.toml"
+    scene.write_text(SCENE, encoding="utf-8")
+    monkeypatch.setitem(sys.modules, "moordyn", None)
+    monkeypatch.setattr("tethertest.bench.speed.scene_speed", None)
+    code, _, err = typed([str(scene), "--peers"], monkeypatch, capsys)
+    assert code == 2
+    assert "pip install 'tethertest[peers]'" in err

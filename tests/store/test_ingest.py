@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from reports.crash_safety.battery import Battery, Tally, kill_at_random, starve
 from tethertest.cli import main
 from tethertest.conditioning import condition
 from tethertest.pipeline.evaluation import read_logs, rig_guide
 from tethertest.pipeline.stored import run_of
 from tethertest.readers import load_run
 from tethertest.store import load_store
-from tethertest.studies.crash_safety import Battery, Tally, kill_at_random, starve
 
 ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "rigs"

@@ -9,9 +9,9 @@ import os
 
 import pytest
 
-from tethertest.studies.clock_errors.judge import judged
-from tethertest.studies.clock_errors.rig import KNOWN_RIG
-from tethertest.studies.clock_errors.table import demands
+from reports.clock_errors.judge import judged
+from reports.clock_errors.rig import KNOWN_RIG
+from reports.clock_errors.table import demands
 
 RUNS = int(os.environ.get("TETHERTEST_CLOCK_RUNS", "300"))
 

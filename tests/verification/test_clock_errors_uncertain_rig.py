@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tethertest.studies.clock_errors.judge import judged
-from tethertest.studies.clock_errors.table import demands
+from reports.clock_errors.judge import judged
+from reports.clock_errors.table import demands
 
 RUNS = 300
 

@@ -6,10 +6,10 @@ import os
 
 import pytest
 
-from tethertest.studies.line_calibration.kinds import KINDS, Kind
-from tethertest.studies.line_calibration.power import AMPLITUDES, NOISES, Noise, coverage, found_at
-from tethertest.studies.line_calibration.rates import rates
-from tethertest.studies.line_calibration.table import coverage_met, found_met
+from reports.line_calibration.kinds import KINDS, Kind
+from reports.line_calibration.power import AMPLITUDES, NOISES, Noise, coverage, found_at
+from reports.line_calibration.rates import rates
+from reports.line_calibration.table import coverage_met, found_met
 
 #: of each kind; 10,000 take an hour
 RECORDS = int(os.environ.get("TETHERTEST_CALIBRATION_RECORDS", "1000"))

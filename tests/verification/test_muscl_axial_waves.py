@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tethertest.bench.finite_volumes import kernel as muscl
+from tethertest.bench.finite_volumes.march import run_axial_muscl
 from tethertest.errors import DataError
-from tethertest.kernels import muscl
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Air, Cable
 from tethertest.records.scene import Bottom, Geometry, MeasuredMotion, Output, Scene, Top
@@ -17,7 +18,6 @@ from tethertest.solver.linear.transfer import tension_transfer
 from tethertest.solver.motion import displacement
 from tethertest.solver.nonlinear.chain_march import run_chain
 from tethertest.solver.statics.rest import rest_state
-from tethertest.studies.references.axial_muscl import run_axial_muscl
 
 RIG = Scene(
     name="3 m rig",
@@ -140,7 +140,7 @@ def test_kernels_say_the_same_compiled_and_plain(monkeypatch: pytest.MonkeyPatch
     assert np.min(compiled.tension) == 0.0
     for name in ("riemann", "wall_strain", "limited_difference", "fill_rates", "damp", "fill_stations"):
         monkeypatch.setattr(muscl, name, getattr(muscl, name).py_func)
-    monkeypatch.setattr("tethertest.studies.references.axial_muscl.march_muscl", muscl.march_muscl.py_func)
+    monkeypatch.setattr("tethertest.bench.finite_volumes.march.march_muscl", muscl.march_muscl.py_func)
     plain = run_axial_muscl(scene, 6)
     np.testing.assert_allclose(plain.tension, compiled.tension, atol=1e-9)
     np.testing.assert_allclose(plain.strain, compiled.strain, atol=1e-12)

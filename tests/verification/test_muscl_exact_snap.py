@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tethertest.kernels import muscl
-from tethertest.kernels.muscl import MusclCable, MusclRecord, MusclTop
+from tethertest.bench.finite_volumes import kernel as muscl
+from tethertest.bench.finite_volumes.kernel import MusclCable, MusclRecord, MusclTop
+from tethertest.bench.finite_volumes.march import run_axial_muscl
 from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
-from tethertest.studies.references.axial_muscl import run_axial_muscl
 
 STIFFNESS, MASS, LENGTH = 10020.0, 0.0484, 3.0
 SPEED, IMPEDANCE = math.sqrt(STIFFNESS / MASS), math.sqrt(STIFFNESS * MASS)

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from reports.quasi_static.table import measure
 from tethertest.records.cable import Air, Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.solver.quasi_static.catenary_run import run_catenary
 from tethertest.solver.quasi_static.validity import MARGIN, quasi_static_allowed, quasi_static_error
-from tethertest.studies.quasi_static import measure
 
 CABLE = Cable(3.0, "unstretched", 0.0484, axial_stiffness=10020.0, diameter=0.006)
 INCLINED = Scene(

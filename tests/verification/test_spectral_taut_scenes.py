@@ -9,6 +9,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from tethertest.bench.spectral_elements.march import run_spectral
+from tethertest.bench.spectral_elements.rest import spectral_rest
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Air, Cable
@@ -16,8 +18,6 @@ from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.solver.nonlinear.chain_march import run_chain
 from tethertest.solver.solution import Solution
 from tethertest.solver.statics.catenary_shape import catenary_between, catenary_of_rest_length
-from tethertest.studies.references.spectral import run_spectral
-from tethertest.studies.references.spectral_rest import spectral_rest
 
 WAVE_SPEED = math.sqrt(120.17 / 0.03352)
 #: rows at the leapfrog's steps on 50 cells, which are steps of every finer mesh at Courant number 1

@@ -8,17 +8,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tethertest.kernels import spectral
-from tethertest.kernels.spectral import SpectralCable, SpectralRecord, SpectralTop
+from tethertest.bench.finite_volumes.march import run_axial_muscl
+from tethertest.bench.spectral_elements import kernel as spectral
+from tethertest.bench.spectral_elements.kernel import SpectralCable, SpectralRecord, SpectralTop
+from tethertest.bench.spectral_elements.march import run_spectral, step_count
+from tethertest.bench.spectral_elements.mesh import SpectralMesh
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Air, Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.solver.linear.transfer import tension_transfer
 from tethertest.solver.motion import displacement
 from tethertest.solver.statics.rest import rest_state
-from tethertest.studies.references.axial_muscl import run_axial_muscl
-from tethertest.studies.references.spectral import run_spectral, step_count
-from tethertest.studies.references.spectral_mesh import SpectralMesh
 
 RIG = Scene(
     name="3 m rig",
@@ -205,7 +205,7 @@ def test_kernels_say_the_same_compiled_and_plain(monkeypatch: pytest.MonkeyPatch
     for name in ("pull_nodes", "accelerate_nodes", "fill_tension", "keep_row"):
         monkeypatch.setattr(spectral, name, getattr(spectral, name).py_func)
     monkeypatch.setattr(
-        "tethertest.studies.references.spectral.march_spectral", spectral.march_spectral.py_func
+        "tethertest.bench.spectral_elements.march.march_spectral", spectral.march_spectral.py_func
     )
     plain = run_spectral(scene, 1)
     np.testing.assert_allclose(plain.tension, compiled.tension, rtol=1e-9)

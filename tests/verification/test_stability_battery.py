@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from tethertest.studies import stability
-from tethertest.studies.stability import Check
+from reports.stability import battery
+from reports.stability.battery import Check
 
 SHORT = 40_000
 
@@ -15,21 +15,21 @@ SHORT = 40_000
 @pytest.mark.parametrize(
     "line",
     [
-        lambda: stability.resonance(100, 1e-3),
-        lambda: stability.resonance(10, 2e-2),
-        stability.beyond_the_limit,
-        lambda: stability.courant_numbers(120.0),
-        lambda: stability.large_motion(600.0),
-        stability.large_motion_without_viscosity,
-        lambda: stability.energy(1.3, SHORT),
-        lambda: stability.energy(5.0, SHORT),
-        lambda: stability.energy(20.0, SHORT),
-        lambda: stability.energy(300.0, SHORT),
-        lambda: stability.rare_slack(SHORT),
-        stability.pretensions,
-        stability.masses,
-        stability.implicit_damping,
-        stability.light_cable,
+        lambda: battery.resonance(100, 1e-3),
+        lambda: battery.resonance(10, 2e-2),
+        battery.beyond_the_limit,
+        lambda: battery.courant_numbers(120.0),
+        lambda: battery.large_motion(600.0),
+        battery.large_motion_without_viscosity,
+        lambda: battery.energy(1.3, SHORT),
+        lambda: battery.energy(5.0, SHORT),
+        lambda: battery.energy(20.0, SHORT),
+        lambda: battery.energy(300.0, SHORT),
+        lambda: battery.rare_slack(SHORT),
+        battery.pretensions,
+        battery.masses,
+        battery.implicit_damping,
+        battery.light_cable,
     ],
 )
 def test_line_of_the_battery(line: Callable[[], Check]) -> None:
@@ -39,10 +39,10 @@ def test_line_of_the_battery(line: Callable[[], Check]) -> None:
 
 def test_energy_at_twice_the_transverse_speed_is_kept_below_courant_number_1() -> None:
     """At 1 itself the mesh resonates there; the solver stays away from it."""
-    assert abs(stability.energy_drift(2.0, SHORT, courant=0.95, viscous=False)) < 2e-3
+    assert abs(battery.energy_drift(2.0, SHORT, courant=0.95, viscous=False)) < 2e-3
 
 
 @pytest.mark.verify
 def test_whole_battery_of_a_million_steps() -> None:
-    missed = [f"{check.name}: {check.found}" for check in stability.battery() if not check.met]
+    missed = [f"{check.name}: {check.found}" for check in battery.battery() if not check.met]
     assert not missed

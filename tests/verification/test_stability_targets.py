@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tethertest.studies import targets
-from tethertest.studies.targets import Target
+from reports.speed_vs_error import targets
+from reports.speed_vs_error.targets import Target
 
 
 def check(target: Target) -> None:

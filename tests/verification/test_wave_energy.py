@@ -1,6 +1,6 @@
 """The source article's Fig. 8 and its conclusions two and three: what its equations give, and its scheme.
 
-Held against closed forms (`tethertest.studies.wave_energy.steady`, half a wave length below a fixed top), the
+Held against closed forms (`reports.wave_energy.steady`, half a wave length below a fixed top), the
 balance of work and power, and the figures that reports/wave-energy quotes.
 """
 
@@ -11,11 +11,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tethertest.solver.linear.coupled import coupled_cable
-from tethertest.studies.wave_energy.answer import answers
-from tethertest.studies.wave_energy.cases import case, settled, started
-from tethertest.studies.wave_energy.files import study_files
-from tethertest.studies.wave_energy.maps import (
+from reports.wave_energy.answer import answers
+from reports.wave_energy.cases import case, settled, started
+from reports.wave_energy.files import study_files
+from reports.wave_energy.maps import (
     Model,
     TensionMap,
     crest,
@@ -24,9 +23,10 @@ from tethertest.studies.wave_energy.maps import (
     standing_share,
     started_map,
 )
-from tethertest.studies.wave_energy.orders import SECTIONS, SettledRun, settled_run
-from tethertest.studies.wave_energy.steady import steady_state
-from tethertest.studies.wave_energy.sweep import run_sweep
+from reports.wave_energy.orders import SECTIONS, SettledRun, settled_run
+from reports.wave_energy.steady import steady_state
+from reports.wave_energy.sweep import run_sweep
+from tethertest.solver.linear.coupled import coupled_cable
 
 CABLE = coupled_cable(started(0.18))
 

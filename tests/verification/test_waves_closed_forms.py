@@ -13,6 +13,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from reports.clock_errors.rig import RIG
+from reports.wave_energy.steady import steady_state
 from tethertest.pipeline.wave_findings import largest_tension, replayed_waves
 from tethertest.records.cable import Cable
 from tethertest.records.channel import Window
@@ -21,8 +23,6 @@ from tethertest.records.response import Response
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.records.waves import OrderWaves
 from tethertest.solver import solve
-from tethertest.studies.clock_errors.rig import RIG
-from tethertest.studies.wave_energy.steady import steady_state
 
 LENGTH, MASS, STIFFNESS, AMPLITUDE = 150.0, 0.0484, 10020.0, 0.1
 IMPEDANCE, SPEED = math.sqrt(STIFFNESS * MASS), math.sqrt(STIFFNESS / MASS)

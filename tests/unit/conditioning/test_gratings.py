@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from reports.lost_gratings.cases import random_case
+from reports.lost_gratings.judge import judge
 from tethertest.conditioning.gratings import assigned
 from tethertest.records.cable import Cable, Platform
 from tethertest.records.channel import Channel, Flag
 from tethertest.records.rig import Instrument, Limits, Rig, Sensor
-from tethertest.studies.lost_gratings import judge, random_case
 
 TIME = np.arange(2000) * 0.01
 PLACES = np.array([1510.0, 1513.0, 1516.2, 1519.0])

@@ -1,0 +1,1 @@
+"""Proofs of the tool: each package makes the tables and figures that stand beside it."""

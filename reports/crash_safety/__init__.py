@@ -1,0 +1,1 @@
+"""A real ingest, killed at random instants and starved of disk."""

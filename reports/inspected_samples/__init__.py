@@ -1,0 +1,1 @@
+"""What `tethertest inspect` says of sample logs."""

@@ -1,0 +1,1 @@
+"""Random interrogator logs with lost, slipped, crossed and false peaks."""

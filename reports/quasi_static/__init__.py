@@ -1,0 +1,1 @@
+"""The quasi-static model's predicted error against its true one."""

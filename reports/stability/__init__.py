@@ -1,0 +1,1 @@
+"""Long, stiff, light, heavy and slack runs, each against what was asked of it."""

@@ -1,0 +1,1 @@
+"""What a user measures on scenes of his own: speed against error, by references of another kind."""

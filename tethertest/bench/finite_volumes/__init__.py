@@ -1,0 +1,1 @@
+"""A reference for axial waves, taut or slack: second-order finite volumes."""

@@ -1,1 +1,0 @@
-"""Solutions by schemes of another kind than the production march, to measure its error with."""

@@ -1,6 +1,6 @@
 """Random runs with known clocks: coverage, error over the bound, wrong cycles, refusals.
 
-What is demanded and what is reached stands in reports/clock-errors.md.
+What is demanded and what is reached stands in reports/clock_errors.
 """
 
 from __future__ import annotations

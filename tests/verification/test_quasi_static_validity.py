@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reports.quasi_static.table import measure
+from reports.quasi_static.measure import measure
 from tethertest.records.cable import Air, Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.solver.quasi_static.catenary_run import run_catenary

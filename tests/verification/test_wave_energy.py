@@ -1,7 +1,7 @@
 """The source article's Fig. 8 and its conclusions two and three: what its equations give, and its scheme.
 
 Held against closed forms (`reports.wave_energy.steady`, half a wave length below a fixed top), the
-balance of work and power, and the figures that reports/wave-energy quotes.
+balance of work and power, and the figures that reports/wave_energy quotes.
 """
 
 from __future__ import annotations

@@ -48,7 +48,10 @@ def solve(
     ] = FidelityChoice.AUTO,
     scheme: Annotated[
         SchemeChoice,
-        typer.Option(help="Scheme of the linear model; as-printed reproduces the article's, with its error."),
+        typer.Option(
+            help="Scheme of the linear model. auto never picks two-grid, a check on exact, nor as-printed, the "
+            "source article's own, whose waves all run at the transverse speed."
+        ),
     ] = SchemeChoice.AUTO,
     tolerance: Annotated[str | None, typer.Option(help='Relative error wanted, such as "1 %".')] = None,
     cells: Annotated[

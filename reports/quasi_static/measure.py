@@ -1,30 +1,20 @@
-"""The quasi-static model's predicted error against its true one, over random inclined scenes.
-
-Run as ``python -m reports.quasi_static.table [scenes] [first seed]``; the table is in
-docs/quasi-static.md.
-"""
+"""The quasi-static model's predicted error against its true one, over random inclined scenes."""
 
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import dataclass
 
 import numpy as np
 
 from tethertest.errors import DataError
-from tethertest.records.arrays import BoolArray, FloatArray
+from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Air, Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.solver.nonlinear.chain_march import run_chain
 from tethertest.solver.quasi_static.catenary_run import run_catenary
 from tethertest.solver.quasi_static.hanging import HangingCable
-from tethertest.solver.quasi_static.validity import (
-    LARGEST_SWING,
-    MARGIN,
-    QuasiStaticEstimate,
-    quasi_static_error,
-)
+from tethertest.solver.quasi_static.validity import QuasiStaticEstimate, quasi_static_error
 
 _GRAVITY = 9.80665
 #: largest strain of a scene that counts
@@ -121,67 +111,6 @@ def measure(seed: int) -> Measured | None:
     )
 
 
-def table(results: list[Measured]) -> str:
-    """Return predicted over true error, and what the rule would have allowed, as text.
-
-    Taut scenes whose reference is not good enough are left out.
-    """
-    good = [result for result in results if result.slack or result.numerical < 0.3 * result.true]
-    true = np.array([result.true for result in good])
-    taut = np.array([not result.slack for result in good])
-    calm = np.array([result.estimate.swing <= LARGEST_SWING for result in good])
-    error = np.array([result.estimate.error for result in good])
-    kinds = {
-        "estimate": error,
-        "about rest only": np.array([result.estimate.about_rest for result in good]),
-        "A w^2/2g form": np.array([result.simple for result in good]),
-    }
-    choices = {
-        "taut": taut,
-        "taut, true < 0.1": taut & (true < 0.1),
-        f"taut, swing <= {LARGEST_SWING:g}": taut & calm,
-        f"slack, swing <= {LARGEST_SWING:g}": ~taut & calm,
-    }
-    head = "prediction | scenes | number | median | 10 % | 90 % | within 3 | below true | x margin below true"
-    lines = [head]
-    for name, predicted in kinds.items():
-        lines += [_line(name, choice, predicted[rows] / true[rows]) for choice, rows in choices.items()]
-    old = taut & np.array([result.estimate.frequency_ratio < 0.3 for result in good])
-    lines += ["", "tolerance | scenes within | allowed | wrongly | 3 w < 0.3 w_t and taut | wrongly"]
-    for tolerance in (0.01, 0.03, 0.1, 0.3):
-        allowed = calm & (MARGIN * error <= tolerance)
-        counts = (true <= tolerance, allowed, allowed & (true > tolerance), old, old & (true > tolerance))
-        lines.append(" | ".join([f"{tolerance:g}", *(str(np.count_nonzero(rows)) for rows in counts)]))
-    return "\n".join(lines)
-
-
-def _line(name: str, choice: str, quotient: FloatArray) -> str:
-    if quotient.size == 0:
-        return f"{name} | {choice} | 0"
-    low, middle, high = np.quantile(quotient, [0.1, 0.5, 0.9])
-
-    def share(rows: BoolArray) -> str:
-        return f"{np.mean(rows):.1%}"
-
-    near = (quotient > 1.0 / 3.0) & (quotient < 3.0)
-    return (
-        f"{name} | {choice} | {quotient.size} | {middle:.2f} | {low:.2f} | {high:.2f} | {share(near)} | "
-        f"{share(quotient < 1.0)} | {share(MARGIN * quotient < 1.0)}"
-    )
-
-
 def _size(values: FloatArray) -> float:
     """Return the largest gauge's RMS."""
     return math.sqrt(float(np.max(np.mean(values**2, axis=0))))
-
-
-def main(arguments: list[str]) -> None:
-    """Measure as many random scenes as asked for, from a first seed, and write the table."""
-    count = int(arguments[0]) if arguments else 300
-    first = int(arguments[1]) if len(arguments) > 1 else 0
-    found = [result for result in map(measure, range(first, first + count)) if result is not None]
-    sys.stdout.write(table(found) + "\n")
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

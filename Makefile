@@ -4,7 +4,7 @@ BIN := .venv/bin
 RUN ?= datasets/rig3m/run04
 JOBS ?= 2
 
-.PHONY: setup report test verify verify-logs verify-lines verify-rest bench lint schema
+.PHONY: setup report test verify verify-logs verify-lines verify-rest bench stability lint schema
 .DEFAULT_GOAL := report
 
 setup: .venv/.ready  ## a virtual environment with the tested versions
@@ -25,26 +25,30 @@ test: setup  ## the tests
 LOGS := tests/verification/test_clock_errors.py tests/store tests/fuzz tests/hostile tests/readers \
 	tests/unit/conditioning tests/verification/test_flag_rates.py
 LINES := tests/unit/spectra tests/pipeline tests/verification/test_line_calibration.py tests/verification/test_wave_energy.py
+PROOF := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m reports
 VERIFY := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m verify
 
-verify: verify-logs verify-lines verify-rest  ## the long batteries, and the campaign against its truth
+verify: verify-logs verify-lines verify-rest  ## the long batteries, and the campaign against its truth; writes nothing
 
 verify-logs: setup  ## readers, hostile and damaged logs, stores, clocks, flags, gratings
 	$(VERIFY) $(LOGS)
 
 verify-lines: setup  ## the line search at its stated rates, sweeps, waves, every run's lines and events
 	$(VERIFY) $(LINES)
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python datasets/check_lines.py
+	$(PROOF).rig3m_lines
 
 verify-rest: setup  ## solver batteries, every run's report, stated against true errors
 	$(VERIFY) $(addprefix --ignore=,$(LOGS) $(LINES))
-	$(BIN)/python datasets/check_rig3m.py
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tethertest.studies.coverage 300 reports/error-coverage.md
+	$(PROOF).rig3m_campaign
+	$(PROOF).error_coverage
 
-bench: setup  ## speed against error, stability, timings of whole processes and of reading
-	$(BIN)/tethertest bench --stability
+bench: setup  ## writes reports/speed_vs_error; times whole processes and reading
+	$(PROOF).speed_vs_error -o reports/speed_vs_error
 	$(BIN)/python tests/benchmarks/whole_processes.py
 	$(BIN)/python tests/benchmarks/reading.py
+
+stability: setup  ## writes reports/stability: runs of a million steps
+	$(PROOF).stability -o reports/stability
 
 lint: setup  ## style, types, layers
 	$(BIN)/ruff format --check

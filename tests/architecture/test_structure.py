@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 LONGEST_FILE = 400
+CONTENTS = (ROOT / "reports" / "README.md").read_text(encoding="utf-8")
 SOURCES = sorted(
     path
     for folder in ("tethertest", "reports", "datasets", "tests")
@@ -53,6 +55,28 @@ def test_no_modules_import_one_another_in_a_circle() -> None:
 def test_the_pipeline_never_opens_the_truth() -> None:
     package = [path for path in SOURCES if path.is_relative_to(ROOT / "tethertest")]
     assert not [path for path in package if "truth" in path.read_text(encoding="utf-8").lower()]
+
+
+REPORTS = sorted(path.parent.name for path in (ROOT / "reports").glob("*/__main__.py"))
+
+
+@pytest.mark.parametrize("name", REPORTS)
+def test_a_report_stands_beside_the_code_that_makes_it(name: str) -> None:
+    folder = ROOT / "reports" / name
+    assert f"`python -m reports.{name}" in (folder / "README.md").read_text(encoding="utf-8")
+    assert f"python -m reports.{name}" in (folder / "__main__.py").read_text(encoding="utf-8")
+    row = re.search(rf"\[{name}\]\({name}/README.md\) \| `python -m reports.{name}[ `]", CONTENTS)
+    assert row, f"{name} is not in reports/README.md"
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="git tells what is kept")
+def test_reports_of_runs_are_not_kept_and_the_others_are() -> None:
+    def ignored(path: str) -> bool:
+        return not subprocess.run(["git", "check-ignore", "-q", path], cwd=ROOT, check=False).returncode
+
+    assert ignored("reports/run04/report.html")
+    assert ignored("reports/a-run-of-yours/anything.csv")
+    assert not [name for name in REPORTS if ignored(f"reports/{name}/README.md")]
 
 
 def test_help_needs_no_heavy_package() -> None:

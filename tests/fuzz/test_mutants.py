@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Final
 
-import fuzz_judge
-import fuzz_seeds
 import pytest
 
+from reports.fuzzing import judge, seeds
 from tethertest.readers.registry import READERS
 
-SEEDS: Final = fuzz_seeds.seeds()
+SEEDS: Final = seeds.seeds()
 
 
 def test_every_reader_has_a_log_to_damage():
@@ -19,13 +18,13 @@ def test_every_reader_has_a_log_to_damage():
 
 @pytest.mark.parametrize("reader", SEEDS)
 def test_damage_is_refused_or_read_as_it_stands(reader, tmp_path):
-    assert fuzz_judge.run(SEEDS[reader], range(200), tmp_path / "log.txt").failures == []
+    assert judge.run(SEEDS[reader], range(200), tmp_path / "log.txt").failures == []
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("reader", SEEDS)
 def test_damage_is_refused_or_read_as_it_stands_at_length(reader, tmp_path):
-    assert fuzz_judge.run(SEEDS[reader], range(5000), tmp_path / "log.txt").failures == []
+    assert judge.run(SEEDS[reader], range(5000), tmp_path / "log.txt").failures == []
 
 
 @pytest.mark.parametrize(
@@ -39,4 +38,4 @@ def test_damage_is_refused_or_read_as_it_stands_at_length(reader, tmp_path):
     ids=lambda seed: f"{seed.reader} {seed.kind}",
 )
 def test_what_means_nothing_changes_nothing(seed, tmp_path):
-    assert fuzz_judge.benign(seed, tmp_path / "log.txt") == []
+    assert judge.benign(seed, tmp_path / "log.txt") == []

@@ -6,10 +6,11 @@ import re
 from pathlib import Path
 from typing import Final
 
-import hostile_door
 import pytest
-from hostile_case import INSPECT, Case
-from hostile_cases import CASES, MEMORY, SECONDS, faults, told
+
+from reports.hostile_input import process
+from reports.hostile_input.case import INSPECT, Case
+from reports.hostile_input.cases import CASES, MEMORY, SECONDS, faults, told
 
 #: cases that one process can be asked together
 TOGETHER: Final = [case for case in CASES if case.command == INSPECT and not case.slow]
@@ -33,7 +34,7 @@ def asked_together(cases: list[Case], words: tuple[str, ...], folder: Path) -> N
     """Ask one process of all cases, and hold what it says of each, its time and its memory."""
     paths = [placed(case, folder / str(number)) for number, case in enumerate(cases)]
     command = ("inspect", *map(str, paths), "--json", *words)
-    done = hostile_door.run(command, folder, SECONDS * len(cases))
+    done = process.run(command, folder, SECONDS * len(cases))
     answers = done.output.splitlines()
     assert len(answers) == len(cases), done.error
     wrong = {
@@ -74,4 +75,4 @@ def test_hostile_run_folders_are_refused(tmp_path):
 def test_the_others_each_in_a_process_of_its_own(case, tmp_path):
     placed(case, tmp_path)
     words = tuple(word.replace("{}", case.file) for word in case.command)
-    assert faults(case, hostile_door.run(words, tmp_path), written(tmp_path)) == []
+    assert faults(case, process.run(words, tmp_path), written(tmp_path)) == []

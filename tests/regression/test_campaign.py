@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 
+from reports.rig3m_campaign.check import check_run
 from tethertest.pipeline.report import make_report
 from tethertest.records.channel import Flag
 
@@ -19,30 +18,17 @@ QUICK = {"run04": {"pass"}, "run15": {"fail", "undecided"}, "run16": {"pass"}, "
 OTHERS = sorted(path.name for path in CAMPAIGN.glob("run*") if path.name not in QUICK)
 
 
-@pytest.fixture(scope="module")
-def checker() -> ModuleType:
-    import sys
-
-    spec = importlib.util.spec_from_file_location("check_rig3m", ROOT / "datasets" / "check_rig3m.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["check_rig3m"] = module
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.parametrize("name", QUICK)
-def test_what_the_report_recovers_is_the_truth(name: str, checker: ModuleType) -> None:
-    check = checker.check_run(CAMPAIGN / name)
+def test_what_the_report_recovers_is_the_truth(name: str) -> None:
+    check = check_run(CAMPAIGN / name)
     assert check.complaints == []
     assert check.verdict in QUICK[name]
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("name", OTHERS)
-def test_every_other_run_too(name: str, checker: ModuleType) -> None:
-    assert checker.check_run(CAMPAIGN / name).complaints == []
+def test_every_other_run_too(name: str) -> None:
+    assert check_run(CAMPAIGN / name).complaints == []
 
 
 def test_f_over_two_of_the_drive_is_told_from_a_true_period_two() -> None:

@@ -49,8 +49,8 @@ def solve(
     scheme: Annotated[
         SchemeChoice,
         typer.Option(
-            help="Scheme of the linear model. auto never picks two-grid, a check on exact, nor as-printed, the "
-            "source article's own, whose waves all run at the transverse speed."
+            help="Scheme of the linear model. auto never picks two-grid, a check on exact, nor as-printed, "
+            "the source article's own, whose waves all run at the transverse speed."
         ),
     ] = SchemeChoice.AUTO,
     tolerance: Annotated[str | None, typer.Option(help='Relative error wanted, such as "1 %".')] = None,

@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from reports.rig3m_lines.findings import HALF_WIDTH, Clock, Complaints, Spans, median_and_worst, table
 from tethertest.records.analysis import ChannelAnalysis
 from tethertest.records.channel import Window
 from tethertest.spectra.cycles import extremes
 from tethertest.spectra.events import slack_intervals
-
-from .findings import HALF_WIDTH, Clock, Complaints, Spans, median_and_worst, table
 
 #: shared time; intervals that nobody may miss [s]; the statement's rule: joined and dropped below [s]
 OVERLAP, LONG, JOINED, SHORTEST = 0.90, 0.05, 0.02, 0.01

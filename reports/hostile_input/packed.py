@@ -7,14 +7,15 @@ import io
 import struct
 import zipfile
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
 import h5py
 import numpy as np
 import openpyxl
-from hostile_case import GOOD, INSPECT, SECRET, Case
+
+from reports.hostile_input.case import GOOD, INSPECT, SECRET, Case
 
 ROW: Final = b"0.0,0.0\n"
 #: with the member that a run file would name
@@ -97,7 +98,9 @@ def hdf5_in_gzip() -> bytes:
     return zeros(100_000_000, b"\0" * 10, buffer.getvalue())
 
 
-def workbook(change: Callable[[str, bytes], bytes] = lambda name, text: text, **extra: bytes) -> bytes:
+def workbook(
+    change: Callable[[str, bytes], bytes] = lambda name, text: text, extra: Mapping[str, bytes] | None = None
+) -> bytes:
     """Return a sound workbook with its parts changed and others added."""
     book, source = openpyxl.Workbook(), io.BytesIO()
     for row in [("time [s]", "F [N]"), *((0.5 * row, 1.5 + row) for row in range(20))]:
@@ -106,7 +109,7 @@ def workbook(change: Callable[[str, bytes], bytes] = lambda name, text: text, **
     with zipfile.ZipFile(source) as archive:
         texts = {name: archive.read(name).replace(b'fullCalcOnLoad="1"', b"") for name in archive.namelist()}
     parts = [(name, change(name, text)) for name, text in texts.items()]
-    return packed(*parts, *extra.items())
+    return packed(*parts, *(extra or {}).items())
 
 
 def in_sheet(old: bytes, new: bytes) -> Callable[[str, bytes], bytes]:
@@ -303,14 +306,14 @@ CASES: Final = (
     _excel(
         "links to other workbooks",
         "reads another file",
-        lambda: workbook(**_LINKS),
+        lambda: workbook(extra=_LINKS),
         '"minimum": 1.5',
         refused=False,
     ),
     _excel(
         "a macro",
         "runs a program",
-        lambda: workbook(**{"xl/vbaProject.bin": bytes(10_000)}),
+        lambda: workbook(extra={"xl/vbaProject.bin": bytes(10_000)}),
         '"minimum": 1.5',
         refused=False,
     ),

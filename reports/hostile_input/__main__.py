@@ -1,7 +1,4 @@
-"""Give every hostile input to a command in a process of its own, and write a table of what came of it.
-
-``python tests/hostile/table.py -o FILE [--only PATTERN]``; leaves with 1 where a case is missed.
-"""
+"""``python -m reports.hostile_input [--only PATTERN] [-o DIR]``: the table; exit 1 where a case is missed."""
 
 from __future__ import annotations
 
@@ -11,14 +8,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "fuzz"))
-
-import hostile_door
-from hostile_case import Case
-from hostile_cases import CASES, MEMORY, SECONDS, faults, refusal
+from reports.hostile_input import process
+from reports.hostile_input.case import Case
+from reports.hostile_input.cases import CASES, MEMORY, SECONDS, faults, refusal
+from tethertest.render.write import write_files
 
 WHAT = f"""\
-`python tests/hostile/table.py -o FILE`: files and run folders that are made to do harm, each given to
+`python -m reports.hostile_input`: files and run folders that are made to do harm, each given to
 `tethertest` in a process of its own. The memory is the sum of the largest memories of all its processes. A
 case is met if the exit code is as expected (2: refused, 0: read right), the message names the file and what
 to do, nothing of another file is told, there is no traceback, and it takes less than {SECONDS:.0f} s and
@@ -28,11 +24,12 @@ same."""
 _SHOWN = 110
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", type=Path, required=True)
+def main(arguments: list[str]) -> int:
+    """Try every case, print the table, write it where asked, and return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m reports.hostile_input", description=__doc__)
     parser.add_argument("--only", default="", help="pattern of the cases' names")
-    asked = parser.parse_args()
+    parser.add_argument("-o", "--output", type=Path, help="folder for the page")
+    asked = parser.parse_args(arguments)
     rows, missed = [], []
     for case in CASES:
         if re.search(asked.only, case.title):
@@ -40,7 +37,6 @@ def main() -> None:
             rows.append(row)
             if wrong:
                 missed.append(f"- {_plain(case.title)}: {_plain('; '.join(wrong))}")
-            sys.stderr.write(f"{row}\n")
     lines = [
         "# Hostile input",
         "",
@@ -53,8 +49,11 @@ def main() -> None:
         f"{len(rows) - len(missed)} of {len(rows)} cases are met.",
         *(["", *missed] if missed else []),
     ]
-    asked.output.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    sys.exit(1 if missed else 0)
+    page = "\n".join(lines) + "\n"
+    sys.stdout.write(page)
+    if asked.output is not None:
+        write_files(asked.output, {"README.md": page.encode()})
+    return 1 if missed else 0
 
 
 def tried(case: Case) -> tuple[str, list[str]]:
@@ -64,7 +63,7 @@ def tried(case: Case) -> tuple[str, list[str]]:
         path = folder / case.file
         case.make(path)
         size = path.stat().st_size if path.is_file() else _size_of(path)
-        done = hostile_door.run(tuple(word.replace("{}", case.file) for word in case.command), folder)
+        done = process.run(tuple(word.replace("{}", case.file) for word in case.command), folder)
         written = "\n".join(made.read_text("utf-8") for made in folder.glob("run.csv"))
     wrong = faults(case, done, written)
     said = refusal(done.output + done.error) if done.code else "read"
@@ -92,4 +91,4 @@ def _plain(text: str) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main(sys.argv[1:]))

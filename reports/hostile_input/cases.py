@@ -6,22 +6,17 @@ import json
 import re
 from typing import Final
 
-import hostile_binary
-import hostile_hdf5
-import hostile_matlab
-import hostile_packed
-import hostile_runs
-import hostile_text
-from hostile_case import Case
-from hostile_door import Done
+from reports.hostile_input import binary, hdf5, matlab, packed, runs, text
+from reports.hostile_input.case import Case
+from reports.hostile_input.process import Done
 
 CASES: Final[tuple[Case, ...]] = (
-    *hostile_hdf5.CASES,
-    *hostile_matlab.CASES,
-    *hostile_packed.CASES,
-    *hostile_text.CASES,
-    *hostile_binary.CASES,
-    *hostile_runs.CASES,
+    *hdf5.CASES,
+    *matlab.CASES,
+    *packed.CASES,
+    *text.CASES,
+    *binary.CASES,
+    *runs.CASES,
 )
 #: what any case may take, on a busy machine [s], and of memory [bytes]
 SECONDS: Final = 20.0

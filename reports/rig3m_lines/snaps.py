@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from reports.rig3m_lines.findings import Clock, Complaints, allowed_misses, median_and_worst, table
 from tethertest.records.analysis import ChannelAnalysis
 from tethertest.records.events import Snap
 from tethertest.spectra.events import find_events, slack_intervals
 from tethertest.spectra.snaps import measured_snaps
-
-from .findings import Clock, Complaints, allowed_misses, median_and_worst, table
 
 #: a snap counts from this peak on [N]: a tenth of it, where its rise begins, is the statement's threshold
 FLOOR = 1.5

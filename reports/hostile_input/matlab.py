@@ -11,8 +11,9 @@ from typing import Any, Final
 
 import h5py
 import numpy as np
-from hostile_case import SECRET, Case
-from hostile_hdf5 import F, T, Told, external_link, hdf5, zeros
+
+from reports.hostile_input.case import SECRET, Case
+from reports.hostile_input.hdf5 import F, T, Told, external_link, hdf5, zeros
 
 HEADER: Final = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
 _CELL, _STRUCT, _OBJECT, _CHAR, _DOUBLE, _FUNCTION, _OPAQUE = 1, 2, 3, 4, 6, 16, 17

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from hostile_case import GOOD, Case
-from hostile_door import ROOT
+
+from reports.hostile_input.case import GOOD, Case
+from reports.hostile_input.process import ROOT
 
 RUN_FILE: Final = """\
 id = "rest-01"

@@ -43,11 +43,10 @@ def run(words: tuple[str, ...], folder: Path, longest: float = LONGEST) -> Done:
                 child.kill()
             time.sleep(_PACE)
         seconds = time.perf_counter() - began
-        texts = []
-        for stream in (output, error):
-            stream.seek(0)
-            texts.append(stream.read().decode(errors="replace"))
-    return Done(child.returncode, *texts, seconds, float(sum(peaks.values())))
+        output.seek(0)
+        error.seek(0)
+        said, complained = (stream.read().decode(errors="replace") for stream in (output, error))
+    return Done(child.returncode, said, complained, seconds, float(sum(peaks.values())))
 
 
 def _family(process: int) -> list[int]:

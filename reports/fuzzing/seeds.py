@@ -11,10 +11,10 @@ import io
 import json
 import tempfile
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 import h5py
 import numpy as np
@@ -45,6 +45,7 @@ class Seed:
 
     @property
     def is_text(self) -> bool:
+        """Whether it is lines of text."""
         return self.reader not in {"tdms", "hdf5", "matlab", "mdf", "excel", "archive"}
 
 
@@ -56,7 +57,9 @@ def gratings(rows: int = ROWS) -> np.ndarray:
     return 1500.0 + 10.0 * np.arange(1, 4) + np.arange(rows)[:, None] / 64.0
 
 
-def _text(reader: str, kind: str, head: list[str], rows: list[str], values: np.ndarray, names=NAMES) -> Seed:
+def _text(
+    reader: str, kind: str, head: list[str], rows: list[str], values: np.ndarray, names: Sequence[str] = NAMES
+) -> Seed:
     data = ("\n".join([*head, *rows]) + "\n").encode()
     return Seed(reader, kind, data, tuple(names), values, tuple(rows), head[-1])
 
@@ -205,7 +208,7 @@ def matlab(*, do_compression: bool) -> Seed:
     columns = dict(zip(NAMES, forces().T, strict=True))
     units = dict.fromkeys(NAMES, "N")
     daq = {"time": np.arange(ROWS) * STEP, **columns, "units": units}
-    scipy.io.savemat(buffer, {"daq": daq}, do_compression=do_compression)
+    scipy.io.savemat(buffer, {"daq": daq}, do_compression=do_compression)  # type: ignore[arg-type]
     kind = "7, compressed" if do_compression else "5"
     return Seed("matlab", f"version {kind}", buffer.getvalue(), NAMES, forces())
 
@@ -221,7 +224,7 @@ def matlab_73() -> Seed:
     return Seed("matlab", "version 7.3", head + buffer.getvalue()[128:], NAMES, forces())
 
 
-def mdf(version: str, compression: int = 0) -> Seed:
+def mdf(version: str, compression: Literal[0, 1, 2] = 0) -> Seed:
     from asammdf import MDF, Signal
 
     time = np.arange(ROWS) * STEP

@@ -10,7 +10,8 @@ from typing import Any, Final
 
 import h5py
 import numpy as np
-from hostile_case import SECRET, Case
+
+from reports.hostile_input.case import SECRET, Case
 
 T: Final = np.arange(50) / 10.0
 F: Final = 5.0 + np.sin(T)

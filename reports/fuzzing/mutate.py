@@ -172,7 +172,7 @@ def mutant(data: bytes, number: int, *, text: bool) -> tuple[bytes, str]:
     """Return a damaged log and what was done to it; every fifth one is damaged twice."""
     draw = np.random.default_rng(number)
     kinds = TEXT if text else BINARY
-    names = []
+    names: list[str] = []
     for _ in range(2 if number % 5 == 4 else 1):
         change = kinds[int(draw.integers(len(kinds)))]
         if change is reencode and names:

@@ -9,10 +9,11 @@ from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
-from fuzz_seeds import catman, mdf, tdms
-from hostile_case import SECRET, Case
-from hostile_hdf5 import Told
-from hostile_packed import writes
+
+from reports.fuzzing.seeds import catman, mdf, tdms
+from reports.hostile_input.case import SECRET, Case
+from reports.hostile_input.hdf5 import Told
+from reports.hostile_input.packed import writes
 
 _SAMPLES: Final = 24  #: rows of the sound logs
 

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from reports.rig3m_lines.findings import CHANNELS, TENSIONS, Clock, Complaints, allowed_misses, table
 from tethertest.records.analysis import Analysis
 from tethertest.records.lines import Line, LineVerdict
-
-from .findings import CHANNELS, TENSIONS, Clock, Complaints, allowed_misses, table
 
 HALVES = {"1/2", "3/2", "5/2"}
 #: the run whose tether answers every second turn, and the one whose gears bring half the speed in

@@ -1,8 +1,6 @@
-#!/usr/bin/env python3
-"""Hold what `tethertest analyze` says about the synthetic campaign's lines and events against its truth.
+"""``python -m reports.rig3m_lines [RUN...] [-o DIR]``: the tables; exit 1 where a demand is not met.
 
-Prints the tables and leaves with exit code 1 if a demand is not met. The truth stands in truth.json beside
-each run; the package itself never opens it.
+The truth stands in truth.json beside each run; the package itself never opens it.
 """
 
 from __future__ import annotations
@@ -12,16 +10,16 @@ import json
 import sys
 from pathlib import Path
 
-from checks.arrivals import ArrivalCheck
-from checks.findings import TENSIONS, Complaints, table
-from checks.lines import LineCheck
-from checks.slack import SlackCheck
-from checks.snaps import SnapCheck
-
+from reports.rig3m_lines.arrivals import ArrivalCheck
+from reports.rig3m_lines.findings import TENSIONS, Complaints, table
+from reports.rig3m_lines.lines import LineCheck
+from reports.rig3m_lines.slack import SlackCheck
+from reports.rig3m_lines.snaps import SnapCheck
 from tethertest.pipeline.analysis_options import Options
 from tethertest.pipeline.analyze import analyze
+from tethertest.render.write import write_files
 
-HERE = Path(__file__).parent
+CAMPAIGN = Path(__file__).parents[2] / "datasets" / "rig3m"
 
 
 class Check:
@@ -50,7 +48,7 @@ class Check:
         """Return the tables."""
         parts = [
             "# Lines and events of the synthetic campaign against its truth\n\n"
-            "Written by `python datasets/check_lines.py --output reports/rig3m-lines.md`. Amplitudes in N "
+            "Written by `python -m reports.rig3m_lines`. Amplitudes in N "
             "and m; the 95 % interval holds noise and the channel's stated scale uncertainty. Rows that the "
             "analysis itself does not stand by (undetermined, not resolvable) do not count for coverage.",
             "## Verdicts\n\n" + table("run|channel|1|2|3|orders p/q that are not none", self.lines.verdicts),
@@ -60,21 +58,21 @@ class Check:
         return "\n\n".join([*parts, "## Demands\n\n" + demands])
 
 
-def main() -> int:
-    """Check all runs, or those named."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="*", help="run folders [all of datasets/rig3m]")
-    parser.add_argument("--output", type=Path, help="write the tables to this Markdown file too")
-    settings = parser.parse_args()
+def main(arguments: list[str]) -> int:
+    """Check all runs, or those named, print the tables, write them where asked, and return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m reports.rig3m_lines", description=__doc__)
+    parser.add_argument("runs", nargs="*", type=Path, help="run folders [all of datasets/rig3m]")
+    parser.add_argument("-o", "--output", type=Path, help="folder for the page")
+    asked = parser.parse_args(arguments)
     check = Check()
-    for folder in [Path(run) for run in settings.runs] or sorted((HERE / "rig3m").glob("run*")):
+    for folder in asked.runs or sorted(CAMPAIGN.glob("run*")):
         check.add(folder)
-    text = check.report()
-    sys.stdout.write(text + "\n")
-    if settings.output:
-        settings.output.write_text(text + "\n", encoding="utf-8")
-    return int(bool(check.complaints.texts))
+    page = check.report() + "\n"
+    sys.stdout.write(page)
+    if asked.output is not None:
+        write_files(asked.output, {"README.md": page.encode()})
+    return 1 if check.complaints.texts else 0
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    sys.exit(main(sys.argv[1:]))

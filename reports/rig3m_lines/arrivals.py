@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from reports.rig3m_lines.findings import TENSIONS, Clock, Complaints, allowed_misses, table
 from tethertest.records.analysis import WaveFindings
 from tethertest.records.events import Front, Interval
-
-from .findings import TENSIONS, Clock, Complaints, allowed_misses, table
 
 #: a front belongs to the knock that arrives nearest to it, within half a knock [s]
 NEAR = 0.03

@@ -1,15 +1,8 @@
-#!/usr/bin/env python3
-"""Hold what `tethertest report` recovers from the synthetic campaign against the truth it was made from.
-
-Prints one table per question and leaves with exit code 1 if a demand is not met. The truth stands in
-truth.json beside each run; the package itself never opens it.
-"""
+"""One run's report against the truth it was made from, which the package itself never opens."""
 
 from __future__ import annotations
 
-import argparse
 import json
-import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -21,7 +14,6 @@ from tethertest.pipeline.report import make_report
 from tethertest.records.channel import Channel
 from tethertest.records.report import Report
 
-HERE = Path(__file__).parent
 #: clean runs: amplitude at f within 3 % or 2 standard errors, slack overlap 90 %, peak within the
 #: truth's own N to 2N spread and 5 %
 AMPLITUDE, STANDARD_ERRORS, OVERLAP, PEAK = 0.03, 2.0, 0.90, 0.05
@@ -176,48 +168,3 @@ def check_run(folder: Path) -> Check:
         if not loud:
             check.complaints.append("a flawed run passed without a word")
     return check
-
-
-def table(checks: list[Check], columns: list[str]) -> str:
-    """Return a Markdown table."""
-    rows = [["run", *columns], ["---"] * (len(columns) + 1)]
-    rows += [[check.name, *(check.row.get(column, "-") for column in columns)] for check in checks]
-    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
-
-
-def main() -> int:
-    """Check all runs, or those named."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="*", help="run folders [all of datasets/rig3m]")
-    parser.add_argument("--output", type=Path, help="write the tables to this Markdown file too")
-    settings = parser.parse_args()
-    folders = [Path(run) for run in settings.runs] or sorted((HERE / "rig3m").glob("run*"))
-    checks = [check_run(folder) for folder in folders]
-    for check in checks:
-        check.row["title"] = check.title
-        check.row["verdict"] = check.verdict
-        check.row["exit"] = str(check.exit_code)
-        check.row["flaws"] = ", ".join(sorted(set(check.flaws))) or "none"
-        check.row["demands"] = "; ".join(check.complaints) or "met"
-    text = "\n\n".join(
-        [
-            "# The synthetic campaign against its truth\n\n"
-            "Written by `python datasets/check_rig3m.py --output reports/rig3m-campaign.md`. "
-            "Pairs are recovered / true; clocks are error ± stated 95 % interval.",
-            table(checks, ["title", "exit", "verdict", "reason"]),
-            "Top tension by order of the drive [N]\n\n" + table(checks, list(ORDERS)),
-            table(checks, ["interrogator", "encoder"]),
-            "Slack at the bottom cell: time in both over time in either (intervals found / true); peaks of "
-            f"the {PEAK_MEAN * 1e3:.0f} ms mean in the steady window [N]\n\n"
-            + table(checks, ["slack", "peak tension_top", "peak tension_bottom"]),
-            table(checks, ["flaws", "findings", "demands"]),
-        ]
-    )
-    sys.stdout.write(text + "\n")
-    if settings.output:
-        settings.output.write_text(text + "\n", encoding="utf-8")
-    return int(any(check.complaints for check in checks))
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
-from hostile_case import GOOD, SECRET, Case
+from reports.hostile_input.case import GOOD, SECRET, Case
 
 HEAD: Final = "time [s],F [N]\n"
 ROWS: Final = "0.0,1.5\n0.5,2.5\n1.0,3.5\n1.5,4.5\n"

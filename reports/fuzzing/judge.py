@@ -9,10 +9,10 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import fuzz_mutate
 import numpy as np
-from fuzz_seeds import Seed
 
+from reports.fuzzing import mutate
+from reports.fuzzing.seeds import Seed
 from tethertest.errors import TethertestError
 from tethertest.readers import read_log
 from tethertest.records.channel import RawLog
@@ -34,7 +34,7 @@ def run(seeds: tuple[Seed, ...], numbers: range, path: Path) -> Tally:
     tally = Tally()
     for number in numbers:
         seed = seeds[number % len(seeds)]
-        data, change = fuzz_mutate.mutant(seed.data, number, text=seed.is_text)
+        data, change = mutate.mutant(seed.data, number, text=seed.is_text)
         path.write_bytes(data)
         began = time.perf_counter()
         log, wrong = None, []
@@ -205,7 +205,7 @@ def benign(seed: Seed, path: Path) -> list[str]:
     path.write_bytes(seed.data)
     plain = read_log(path, seed.settings)
     found = []
-    for label, change in fuzz_mutate.BENIGN.items():
+    for label, change in mutate.BENIGN.items():
         path.write_bytes(change(seed.data))
         try:
             other = read_log(path, seed.settings)

@@ -1,0 +1,1 @@
+"""Damaged logs of every format, and what became of them."""

@@ -1,0 +1,1 @@
+"""What `tethertest report` recovers from the synthetic campaign, against the truth it was made from."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from reports.speed_vs_error.peers import PeerScene
 from reports.speed_vs_error.targets import Target
-from tethertest.bench.tables import markdown_table
+from tethertest.bench.tables import HOW_MOORDYN_RUNS, markdown_table
 
 
 def targets_table(targets: Iterable[Target]) -> str:
@@ -22,13 +22,8 @@ def peers_page(scenes: Sequence[PeerScene], command: str) -> str:
     """Return the page of the comparison with MoorDyn."""
     parts = [
         "# Against MoorDyn",
-        f"Written by `{command}`, both codes in the same run. MoorDyn runs with rk4 at Courant number 0.61 "
-        "(less where its damping asks for it) from the same discrete equilibrium; its time is that of its "
-        "step loop alone, ours includes the rest state. MoorDyn's end tension belongs to the middle of its "
-        "end segment. That offset is removed by the momentum balance of the half segment, "
-        "F(0) = F_1/2 - (m h/2)(a - g) and F(L) = F_n-1/2 - (m h/2) g, from the positions and velocities of "
-        "its end nodes. The last table of a scene divides MoorDyn's time by that of our cheapest run that is "
-        "at least as accurate.",
+        f"Written by `{command}`, both codes in the same run. {HOW_MOORDYN_RUNS} The last table of a scene "
+        "divides MoorDyn's time by that of our cheapest run that is at least as accurate.",
     ]
     for scene in scenes:
         rows = [

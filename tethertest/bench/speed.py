@@ -260,7 +260,10 @@ def _by_moordyn(case: Case, reference: Reference) -> Iterator[Entry]:
     for segments in SEGMENTS:
         if segments * moordyn_steps(case.scene, segments) > _PEER_WORTH:
             return
-        tension, wall = run_moordyn(case.scene, segments)
+        try:
+            tension, wall = run_moordyn(case.scene, segments)
+        except DataError:  # it refuses the line, or there is no rest on so few segments
+            return
         yield _compared("MoorDyn", segments, wall, tension[:, end_of], reference.tension[:, at_end], case)
 
 

@@ -11,6 +11,15 @@ from typing import Any
 
 from tethertest.bench.speed import Entry, SceneSpeed
 
+#: how the peer is run, for the pages on which it stands
+HOW_MOORDYN_RUNS = (
+    "MoorDyn runs with rk4 at Courant number 0.61 (less where its damping asks for it) from the same "
+    "discrete equilibrium; its time is that of its step loop alone, ours includes the rest state. MoorDyn's "
+    "end tension belongs to the middle of its end segment. That offset is removed by the momentum balance "
+    "of the half segment, F(0) = F_1/2 - (m h/2)(a - g) and F(L) = F_n-1/2 - (m h/2) g, from the positions "
+    "and velocities of its end nodes."
+)
+
 
 def speed_page(scenes: Sequence[SceneSpeed], command: str, more: Sequence[str] = ()) -> str:
     """Return the page of speed against error.
@@ -34,6 +43,7 @@ def speed_page(scenes: Sequence[SceneSpeed], command: str, more: Sequence[str] =
         "## What the solver chooses",
         _chosen_table(scenes),
         _remarks(scenes),
+        f"{HOW_MOORDYN_RUNS} It is compared at the gauges of the ends alone." if _has_peers(scenes) else "",
         *more,
         "## Every model and mesh",
     ]
@@ -72,6 +82,10 @@ def markdown_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> st
     """Return a table in Markdown."""
     lines = [headings, ["---"] * len(headings), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def _has_peers(scenes: Sequence[SceneSpeed]) -> bool:
+    return any(run.curve == "MoorDyn" for scene in scenes for run in scene.entries)
 
 
 def _chosen_table(scenes: Sequence[SceneSpeed]) -> str:

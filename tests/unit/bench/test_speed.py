@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 
 from reports.scenes import SHIPPED, condition, condition_upright, rig, snap
+from tethertest.bench import speed
 from tethertest.bench.case import Case, load_cases
+from tethertest.bench.moordyn import moordyn_knows
 from tethertest.bench.reference_for import closed_form, is_sudden, reference_for
 from tethertest.bench.spectral_elements.march import run_spectral
 from tethertest.bench.speed import mean_peak, scene_speed, variants
+from tethertest.records.scene import Top
 from tethertest.solver.norms import relative_difference
 
 
@@ -99,6 +102,22 @@ def test_a_taut_scene_by_every_model_that_takes_it() -> None:
     assert chosen.run.error < 3.0 * chosen.numerical
     assert all(run.wall > 0.0 for run in found.entries)
     assert not list(variants(case, found))
+
+
+def test_moordyn_is_compared_at_the_ends_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A stand-in is right at the top and wrong at the bottom; the gauges are the middle and the top."""
+    case = shortened("straight-free-shape", 0.4)
+    case = replace(case, scene=replace(case.scene, output=replace(case.scene.output, gauges=(0.5, 1.0))))
+    exact = closed_form(case.scene)
+    assert exact is not None
+    ends = np.column_stack([np.zeros(exact.shape[0]), exact[:, 1]])
+    monkeypatch.setattr(speed, "run_moordyn", lambda _scene, _segments: (ends, 0.5))
+    found = [
+        run for run in scene_speed(case, meshes=(20,), with_peers=True).entries if run.curve == "MoorDyn"
+    ]
+    assert [(run.cells, run.wall, run.error) for run in found] == [(n, 0.5, 0.0) for n in speed.SEGMENTS]
+    held = replace(case, scene=replace(case.scene, top=Top("platform", mass=1.0)))
+    assert not moordyn_knows(held)
 
 
 def test_a_jump_without_a_reference_gets_a_variant_that_has_one() -> None:

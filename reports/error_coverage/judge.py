@@ -53,7 +53,6 @@ class Judged:
     tolerance: float
     wall: float  #: [s], without the members of the spread
     cheapest: float  #: [s], of the cheapest fidelity whose true error is within the tolerance
-    cheapest_fidelity: str
 
     @property
     def covered(self) -> bool:
@@ -112,7 +111,7 @@ def judge(seed: int) -> Judged | Skipped:
     true = reference.distance(response.tension)
     if reference.error > _SURE * tolerance:
         return Skipped(seed, f"the reference is not sure enough ({reference.error:.1e})", response.fidelity)
-    wall, cheapest, name = _times(scene, reference, tolerance)
+    wall, cheapest = _times(scene, reference, tolerance)
     return Judged(
         seed,
         scene.geometry.kind,
@@ -129,7 +128,6 @@ def judge(seed: int) -> Judged | Skipped:
         tolerance,
         wall,
         cheapest,
-        name,
     )
 
 
@@ -172,10 +170,10 @@ def _goes_slack(response: Response) -> bool:
     return response.fidelity == "nonlinear" and float(np.min(response.field.minimum)) <= 0.0
 
 
-def _times(scene: Scene, reference: Reference, tolerance: float) -> tuple[float, float, str]:
-    """Return the time of the automatic choice, and that of the cheapest adequate fidelity with its name."""
+def _times(scene: Scene, reference: Reference, tolerance: float) -> tuple[float, float]:
+    """Return the time of the automatic choice, and that of the cheapest adequate fidelity."""
     wall, _ = _timed(scene, "auto", tolerance)
-    best, name = np.inf, ""
+    best = np.inf
     for fidelity in ("catenary", "linear", "nonlinear"):
         try:
             taken, response = _timed(scene, fidelity, tolerance)
@@ -183,8 +181,8 @@ def _times(scene: Scene, reference: Reference, tolerance: float) -> tuple[float,
             continue
         same = response.tension.shape == reference.low.shape
         if same and reference.distance(response.tension) <= tolerance:
-            best, name = min((best, name), (taken, fidelity))
-    return wall, float(best), name
+            best = min(best, taken)
+    return wall, float(best)
 
 
 def _timed(scene: Scene, fidelity: Fidelity, tolerance: float) -> tuple[float, Response]:

@@ -19,5 +19,6 @@ napoleon_google_docstring = False
 napoleon_use_rtype = False
 default_role = "any"
 myst_heading_anchors = 3
-suppress_warnings = ["ref.any", "myst.xref_missing"]  # docstrings name private helpers, pages name files of the tree
+# docstrings name private helpers, pages name files of the tree
+suppress_warnings = ["ref.any", "myst.xref_missing"]
 intersphinx_mapping: dict[str, tuple[str, str | None]] = {}  # the site is built without a network

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from reports.rig3m_campaign.check import ORDERS, PEAK_MEAN, Check, check_run
+from tethertest.bench.tables import markdown_table
 from tethertest.render.write import write_files
 
 CAMPAIGN = Path(__file__).parents[2] / "datasets" / "rig3m"
@@ -51,10 +52,9 @@ def page(checks: list[Check]) -> str:
 
 
 def table(checks: list[Check], columns: list[str]) -> str:
-    """Return a Markdown table."""
-    rows = [["run", *columns], ["---"] * (len(columns) + 1)]
-    rows += [[check.name, *(check.row.get(column, "-") for column in columns)] for check in checks]
-    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+    """Return what runs say in these columns."""
+    rows = ([check.name, *(check.row.get(column, "-") for column in columns)] for check in checks)
+    return markdown_table(("run", *columns), rows)
 
 
 if __name__ == "__main__":

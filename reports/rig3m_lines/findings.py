@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from scipy.stats import binom
 
+from tethertest.bench.tables import markdown_table
+
 CHANNELS = ("tension_top", "tension_bottom", "heave")
 TENSIONS = CHANNELS[:2]
 #: half width of a 95 % interval in standard errors
@@ -52,10 +54,8 @@ def allowed_misses(count: int) -> int:
 
 
 def table(heads: str, rows: list[list[str]]) -> str:
-    """Return a Markdown table."""
-    columns = heads.split("|")
-    lines = [columns, ["---"] * len(columns), *rows]
-    return "\n".join("| " + " | ".join(cell.strip() for cell in row) + " |" for row in lines)
+    """Return a Markdown table; its heads stand between bars."""
+    return markdown_table(heads.split("|"), ([cell.strip() for cell in row] for row in rows))
 
 
 def median_and_worst(errors: np.ndarray, digits: int = 1) -> str:

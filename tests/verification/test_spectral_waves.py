@@ -185,7 +185,7 @@ def test_drag_pushes_with_the_wind_and_splits_into_normal_and_tangential() -> No
     assert air[0] == pytest.approx(normal * 0.8 + tangential * 0.6)
     assert air[1] == pytest.approx(-normal * 0.6 + tangential * 0.8)
     assert inner[:, 0] == pytest.approx(0.1 * np.array([0.6, 0.8]))  # the cable pulls its bottom end up
-    assert inner[:, 1:-1] == pytest.approx(0.0, abs=1e-14)
+    assert inner[:, 1:-1] == pytest.approx(0.0, abs=1e-13)  # rounding, which differs between processors
 
 
 def test_kernels_say_the_same_compiled_and_plain(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -70,7 +70,7 @@ def run_moordyn(scene: Scene, segments: int) -> tuple[FloatArray, float]:
     Parameters
     ----------
     scene : Scene
-        In one plane under a fixed top, gauges at both ends, no wind.
+        Under a fixed top, no wind.
     segments : int
         Of its line.
 

@@ -22,7 +22,7 @@ _RIGS = {
 
 def main(arguments: list[str]) -> int:
     """Judge the first runs, print the table, write it where asked, and return the exit code."""
-    parser = argparse.ArgumentParser(prog="python -m reports.clock_errors")
+    parser = argparse.ArgumentParser(prog="python -m reports.clock_errors", description=__doc__)
     parser.add_argument("runs", type=int, nargs="?", default=300, help="with the rig known for certain")
     parser.add_argument(
         "off", type=int, nargs="?", default=300, help="with a rig that its file does not tell"

@@ -25,7 +25,7 @@ def _counts(number: int, records: int) -> tuple[int, int, int, int, Mapping[Line
 
 def main(arguments: list[str]) -> int:
     """Analyse the records, print the tables, write them where asked, and return the exit code."""
-    parser = argparse.ArgumentParser(prog="line_calibration", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m reports.line_calibration", description=__doc__)
     parser.add_argument("records", type=int, help="records of each kind")
     parser.add_argument("-o", "--output", type=Path, help="folder for the files")
     parser.add_argument("--jobs", type=int, default=1, help="processes; the tables do not depend on them")

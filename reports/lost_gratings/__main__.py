@@ -27,7 +27,7 @@ def main(arguments: list[str]) -> int:
 
 
 def table(outcomes: Sequence[Outcome]) -> str:
-    """Return the study's page in Markdown."""
+    """Return the page in Markdown."""
     groups = [("all runs", list(outcomes))]
     plain = [item for item in outcomes if item.case.clear and not item.case.ghosts]
     groups.append(("clear: every grating stays nearer to its own place than to a neighbour's", plain))

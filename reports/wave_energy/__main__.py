@@ -14,7 +14,7 @@ from tethertest.render.write import write_files
 
 def main(arguments: list[str]) -> None:
     """Run the sweep, print the answers and write the report where asked."""
-    parser = argparse.ArgumentParser(prog="wave_energy", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m reports.wave_energy", description=__doc__)
     parser.add_argument("-o", "--output", type=Path, help="folder for the report")
     settings = parser.parse_args(arguments)
     sweep = run_sweep()

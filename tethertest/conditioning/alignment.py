@@ -8,11 +8,11 @@ from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline
 
 from tethertest.conditioning.coloured import Noise, noise_of
 from tethertest.conditioning.uniform import Signal
 from tethertest.records.arrays import BoolArray, FloatArray
+from tethertest.signal.spline import spline
 from tethertest.signal.windows import Span
 
 IntegerArray: TypeAlias = npt.NDArray[np.int64]
@@ -113,13 +113,13 @@ class Comparison:
         self.noisy_slow = _floor(self.slow, cutoff) > _floor(self.fast, cutoff)
         self.spans, self.only, self.systematic = spans, slowest == 0.0, systematic
         self.time = self.slow.time
-        self._fast = CubicSpline(self.fast.time, self.fast.values)
-        self._slope = self._fast.derivative()
-        self._own_slope = CubicSpline(self.time, self.slow.values)(self.time, 1)
+        self._fast = spline(self.fast.time, self.fast.values)
+        self._slope = self._fast.slope()
+        self._own_slope = spline(self.time, self.slow.values)(self.time, 1)
         self._changes = (
             np.column_stack(pair.changes) if pair.changes else np.zeros((pair.clock.values.size, 0))
         )
-        self._between = CubicSpline(pair.clock.time, self._changes) if pair.changes else None
+        self._between = spline(pair.clock.time, self._changes) if pair.changes else None
         self.levels = np.zeros((self.time.size, 0)) if self.only else levels(self.time, slowest)
 
     def look(self, offset: float, drift: float) -> Looked:

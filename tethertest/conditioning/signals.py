@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from tethertest.conditioning.alignment import Pair
 from tethertest.conditioning.uniform import LOW_PASS, Signal, uniform
@@ -14,6 +13,7 @@ from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Flag
 from tethertest.records.rig import Rig
 from tethertest.signal.filters import filled
+from tethertest.signal.spline import spline
 
 #: the motion is handed to the rig's mechanics below this [Hz] at this step [s]: what a tap of 60 ms has
 MOTION_TOP, MOTION_STEP = 100.0, 2e-3
@@ -80,9 +80,9 @@ def handed_over(heave: Channel) -> Channel:
     """
     signal = uniform(heave, top=MOTION_TOP)
     time = np.arange(signal.start, signal.stop, MOTION_STEP)
-    values = CubicSpline(signal.time, signal.values)(time)
+    values = spline(signal.time, signal.values)(time)
     flags = np.where(signal.usable_at(time), np.uint16(0), np.uint16(Flag.MISSING)).astype(np.uint16)
-    return replace(heave, time=time, values=np.asarray(values, dtype=np.float64), flags=flags)
+    return replace(heave, time=time, values=values, flags=flags)
 
 
 def expected_pair(
@@ -156,7 +156,7 @@ def _bounce(answer: Signal) -> float:
 
 def _without_bounce(signal: Signal, quarter: float) -> Signal:
     """Return the mean of two values half a bounce apart: free bouncing drops out, whatever started it."""
-    through = CubicSpline(signal.time, signal.values)
+    through = spline(signal.time, signal.values)
     before = np.maximum(signal.time - quarter, signal.start)
     after = np.minimum(signal.time + quarter, signal.stop)
     return replace(signal, values=0.5 * (through(before) + through(after)))
@@ -175,7 +175,7 @@ def _settled(heave: Channel) -> BoolArray:
 def _like(answer: Signal, heave: Channel, change: FloatArray) -> FloatArray:
     """Return a change at the answer's times, filtered as the answer is."""
     there = uniform(heave.with_values(change))
-    return np.asarray(CubicSpline(there.time, there.values)(answer.time), dtype=np.float64)
+    return spline(there.time, there.values)(answer.time)
 
 
 def _at_place(tensions: Sequence[Channel], place: float) -> Channel:

@@ -10,6 +10,7 @@ from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel
 from tethertest.signal.filters import HOLE_INTERVALS, filled, low_passed, without_line
 from tethertest.signal.noise import white_noise
+from tethertest.signal.spline import spline
 
 #: noise above this says nothing about a tap of 60 ms or a UAV bouncing at 14 Hz [Hz]
 LOW_PASS = 45.0
@@ -122,8 +123,6 @@ def _regular(channel: Channel) -> tuple[FloatArray, BoolArray, float, float]:
         step = float(time[-1] - time[0]) / (count - 1)
         if float(np.max(np.abs(time - time[0] - step * np.arange(count)))) < REGULAR * step:
             return known, usable, float(time[0]), step
-    from scipy.interpolate import CubicSpline
-
     grid = time[0] + step * np.arange(count)
     grid = grid[grid <= time[-1]]
     after = np.clip(np.searchsorted(time, grid), 1, time.size - 1)
@@ -135,4 +134,4 @@ def _regular(channel: Channel) -> tuple[FloatArray, BoolArray, float, float]:
     order = np.argsort(knots, kind="stable")
     knots, heights = knots[order], np.concatenate((known, np.interp(bridge, time, known)))[order]
     new = np.concatenate(([True], np.diff(knots) > DISTINCT * step))
-    return CubicSpline(knots[new], heights[new])(grid), sound, float(time[0]), step
+    return spline(knots[new], heights[new])(grid), sound, float(time[0]), step

@@ -7,6 +7,7 @@ noise, and the wide band is kept only where something sudden happened, as at the
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,36 +101,64 @@ def _passed(values: FloatArray, rate: float, cutoff: float) -> FloatArray:
     A flat pass band matters: a Butterworth filter with half power there would take 4 % off the second order
     of a drive at a quarter of it.
     """
-    from scipy.signal import fftconvolve, firwin, kaiserord
+    from scipy.fft import irfft, next_fast_len, rfft
 
     nyquist = 0.5 * rate
     if cutoff * (1.0 + TRANSITION) >= nyquist:
         return values
-    taps, beta = kaiserord(RIPPLE, TRANSITION * cutoff / nyquist)
+    taps = math.ceil((RIPPLE - 7.95) / 2.285 / (np.pi * (TRANSITION * cutoff / nyquist)) + 1.0)
     taps = min(taps | 1, (values.size - 1) | 1)
     half = taps // 2
-    window = firwin(taps, (1.0 + 0.5 * TRANSITION) * cutoff, window=("kaiser", beta), fs=rate)
+    window = _low_pass((1.0 + 0.5 * TRANSITION) * cutoff / nyquist, taps)
     padded = np.pad(values, half, mode="reflect", reflect_type="odd")
-    return np.asarray(fftconvolve(padded, window, mode="valid"), dtype=np.float64)
+    full = padded.size + taps - 1
+    size = next_fast_len(full, real=True)
+    smooth = irfft(rfft(padded, size) * rfft(window, size), size)[:full]
+    return np.array(smooth[taps - 1 : padded.size], dtype=np.float64)
+
+
+def _low_pass(cutoff: float, taps: int) -> FloatArray:
+    """Return a finite low-pass of so many taps, in Kaiser's window; the cut-off is a share of half the rate.
+
+    References
+    ----------
+    A. V. Oppenheim and R. W. Schafer, Discrete-Time Signal Processing, section 7.5.3.
+    """
+    from scipy.special import i0
+
+    beta = 0.1102 * (RIPPLE - 8.7)
+    middle = 0.5 * (taps - 1)
+    index = np.arange(taps, dtype=np.float64)
+    window = i0(beta * np.sqrt(1.0 - ((index - middle) / middle) ** 2)) / i0(beta)
+    ideal = cutoff * np.sinc(cutoff * (index - middle)) * window
+    return np.asarray(ideal / np.sum(ideal))
 
 
 def _drive_band(
     values: FloatArray, rate: float, frequency: float | None, time: FloatArray, steady: Window | None
 ) -> float:
     """Return the cut-off [Hz] that keeps what the encoder sees above its own noise in the steady window."""
-    from scipy.signal import welch
-
     lowest = min(max(LOWEST_CUTOFF, KEPT_ORDERS * (frequency or 0.0)), WIDE_BAND)
     if steady is None:
         return lowest
     part = values[(time >= steady.start) & (time <= steady.stop)]
     if part.size < 64:
         return lowest
-    axis, power = welch(part - part.mean(), fs=rate, nperseg=min(part.size, int(8 * rate)), window="hann")
+    axis, power = _power(part - part.mean(), rate, min(part.size, int(8 * rate)))
     floor = float(np.median(power[axis > 0.5 * axis[-1]]))
     seen = axis[power > ABOVE_NOISE * floor]
     highest = 1.2 * float(seen[-1]) if seen.size else 0.0
     return float(min(max(lowest, highest), WIDE_BAND))
+
+
+def _power(values: FloatArray, rate: float, length: int) -> tuple[FloatArray, FloatArray]:
+    """Return Welch's power density over frequency [Hz], from half overlapping parts in a Hann window."""
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(length) / length)
+    parts = np.lib.stride_tricks.sliding_window_view(values, length)[:: length - length // 2]
+    transforms = np.fft.rfft(window * (parts - parts.mean(axis=1, keepdims=True)), axis=1)
+    power = np.mean(np.abs(transforms) ** 2, axis=0) / (rate * np.sum(window**2))
+    power[1 : (length + 1) // 2] *= 2.0  # the negative frequencies; zero and half the rate have none
+    return np.asarray(np.fft.rfftfreq(length, 1.0 / rate), dtype=np.float64), np.asarray(power)
 
 
 def _sudden(rough: FloatArray, rate: float) -> BoolArray:

@@ -104,5 +104,6 @@ def _replay(
         measured=motion.motion,
         fidelity="nonlinear" if fidelity == "nonlinear" else "linear",
         cells=cells,
+        with_field=False,
     )
     return replayed_channels(response, motion.start, measured)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.scene import Bottom, MeasuredMotion
+from tethertest.signal.spline import Piecewise, spline
 
 
 def smooth_step(ratio: FloatArray) -> FloatArray:
@@ -153,22 +156,31 @@ def _crank_angle(time: FloatArray, frequency: float, ramp: float | None) -> Floa
 
 
 def _measured(time: FloatArray, measured: MeasuredMotion | None) -> FloatArray:
-    from scipy.interpolate import CubicSpline
-
     data = _given(measured)
-    spline = CubicSpline(data.time, data.displacement)
+    through = _splined(data)
     inside = np.clip(time, data.time[0], data.time[-1])
-    beyond = time - inside  # a step or two of the solver's: uniform acceleration goes on
-    return np.asarray(spline(inside) + beyond * (spline(inside, 1) + 0.5 * beyond * spline(inside, 2)))
+    found = through(inside)
+    beyond = time != inside  # a step or two of the solver's: uniform acceleration goes on
+    if beyond.any():
+        end, after = inside[beyond], time[beyond] - inside[beyond]
+        found[beyond] += after * (through(end, 1) + 0.5 * after * through(end, 2))
+    return found
 
 
 def _measured_velocity(time: FloatArray, measured: MeasuredMotion | None) -> FloatArray:
-    from scipy.interpolate import CubicSpline
-
     data = _given(measured)
-    spline = CubicSpline(data.time, data.displacement)
+    through = _splined(data)
     inside = np.clip(time, data.time[0], data.time[-1])
-    return np.asarray(spline(inside, 1) + (time - inside) * spline(inside, 2))
+    found = through(inside, 1)
+    beyond = time != inside
+    if beyond.any():
+        found[beyond] += (time[beyond] - inside[beyond]) * through(inside[beyond], 2)
+    return found
+
+
+@lru_cache(maxsize=2)  # one solve asks for it dozens of times, and so do the variations of a rig
+def _splined(data: MeasuredMotion) -> Piecewise:
+    return spline(data.time, data.displacement)
 
 
 def _given(measured: MeasuredMotion | None) -> MeasuredMotion:

@@ -32,6 +32,7 @@ class Problem:
     finest: int = 1280  #: finest mesh that may be tried
     node_steps: float = 4e9  #: most cells x steps of one march
     native_times: bool = False
+    with_field: bool = True  #: follow the tension between the gauges, where that takes time
     rest: FloatArray | None = None  #: (g,) tension at rest [N], where the first row is not at rest
 
     def apart(self, tension: FloatArray, reference: FloatArray) -> float:

@@ -40,6 +40,7 @@ def solve(
     finest: int = 1280,
     native_times: bool = False,
     spread: bool = True,
+    with_field: bool = True,
 ) -> Response:
     """Solve a scene.
 
@@ -68,6 +69,9 @@ def solve(
         Rows at the scheme's own time levels instead of k/rate.
     spread : bool
         Run the members that tell how far unknown damping and straightness move a slack cable's answer.
+    with_field : bool
+        Follow the tension along the whole cable; without, models that need not do so leave it out, and the
+        field is that of the gauges.
 
     Returns
     -------
@@ -93,7 +97,9 @@ def solve(
     if wind is None and scene.air is not None and scene.air.wind_file is not None:
         message = f"scene {scene.name!r}: its wind is in a file that has not been read"
         raise DataError(message, "give solve(scene, wind=read_wind(scene)), or leave out [air] wind_file")
-    problem = Problem(scene, wanted, motion, wind, cells, finest, native_times=native_times)
+    problem = Problem(
+        scene, wanted, motion, wind, cells, finest, native_times=native_times, with_field=with_field
+    )
     if problem.sudden:
         problem = replace(problem, rest=rest_tension(scene))
     numbers = scene_numbers(scene, motion)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy import stats
+from scipy.special import ndtri
 
 from tethertest.records.across import Judgement, Step, StepVerdict
 from tethertest.records.arrays import FloatArray
@@ -82,7 +82,7 @@ def judge_steps(
     if setting[0] > setting[-1]:
         setting, amplitude, error = setting[::-1], amplitude[::-1], error[::-1]
     curve = _Curve.of(setting, amplitude, error)
-    limit = float(stats.norm.isf(significance / (2.0 * (setting.size - 1))))
+    limit = float(-ndtri(significance / (2.0 * (setting.size - 1))))
     steps: list[Step] = []
     for gap in range(setting.size - 1):
         step = _jump(curve, gap, limit) or _steep(curve, gap) or _lone(curve, gap, limit)

@@ -11,6 +11,7 @@ from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import Channel, Window
 from tethertest.signal.filters import filled, low_passed
+from tethertest.signal.spline import spline
 from tethertest.spectra.stroboscope import PHASES
 
 #: orders of the drive that are kept: differentiation would show the noise above
@@ -67,8 +68,6 @@ def portrait(channel: Channel, window: Window, frequency: float) -> Portrait:
         The window holds fewer than three periods of this channel, fewer than two samples per period, or no
         usable sample.
     """
-    from scipy.interpolate import CubicSpline
-
     part = channel.between(window.start, window.stop)
     rate = part.rate
     # n samples last n intervals, and the window's ends may each have cost a part of another
@@ -82,11 +81,11 @@ def portrait(channel: Channel, window: Window, frequency: float) -> Portrait:
         raise DataError(
             message, f"choose a window of {FEWEST_PERIODS} periods or more, of two samples or more each"
         )
-    spline = CubicSpline(part.time, low_passed(filled(part), rate, HIGHEST_ORDER * frequency))
+    through = spline(part.time, low_passed(filled(part), rate, HIGHEST_ORDER * frequency))
     start, stop = float(part.time[0]), float(part.time[-1])
     instants = start + (np.arange(count)[None, :] + np.arange(PHASES)[:, None] / PHASES) / frequency
     instants = np.minimum(instants[instants[:, -1] <= stop + _HAIR / frequency], stop)
-    best = int(np.argmax(spline(instants).std(axis=1)))
+    best = int(np.argmax(through(instants).std(axis=1)))
     shown = min(count, MOST_PERIODS)
     points = np.linspace(max(start, stop - shown / frequency), stop, shown * POINTS + 1)
     return Portrait(
@@ -94,9 +93,9 @@ def portrait(channel: Channel, window: Window, frequency: float) -> Portrait:
         channel.unit,
         float((instants[best, 0] - start) * frequency),
         frozen(instants[best]),
-        frozen(spline(instants[best])),
-        frozen(spline(instants[best], 1)),
-        frozen(spline(points)),
-        frozen(spline(points, 1)),
+        frozen(through(instants[best])),
+        frozen(through(instants[best], 1)),
+        frozen(through(points)),
+        frozen(through(points, 1)),
         shown,
     )

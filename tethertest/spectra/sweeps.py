@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from scipy import stats
+from scipy.special import ndtri
 
 from tethertest.records.across import Branch, Direction, Hysteresis, Step
 from tethertest.records.arrays import FloatArray
@@ -132,7 +132,7 @@ def judge_loop(
     at = np.array([0.5 * (up[0][i] + down[0][j]) for i, j in pairs])
     apart = np.array([up[1][i] - down[1][j] for i, j in pairs])
     spread = np.array([math.hypot(up[2][i], down[2][j]) for i, j in pairs])
-    limit = float(stats.norm.isf(significance / (2.0 * len(pairs))))
+    limit = float(-ndtri(significance / (2.0 * len(pairs))))
     different = np.flatnonzero(np.abs(apart) > limit * spread)
     grid = np.unique(np.clip(np.concatenate((up[0], down[0])), low, high))
     width = np.diff(grid)
@@ -146,7 +146,7 @@ def judge_loop(
         0.5 * (jump.interval[1] - jump.interval[0]) * abs(jump.amplitudes[1] - jump.amplitudes[0])
         for jump in jumps
     )
-    half = float(stats.norm.isf(_TAIL)) * math.sqrt(variance) + jumped
+    half = float(-ndtri(_TAIL)) * math.sqrt(variance) + jumped
     largest = int(np.argmax(np.abs(apart)))
     return Hysteresis(
         area=area,

@@ -7,6 +7,7 @@ import numpy as np
 from tethertest.errors import QuantityError
 from tethertest.readers.scenes.series_table import Column, SeriesTable
 from tethertest.records.arrays import FloatArray
+from tethertest.signal.spline import spline
 from tethertest.units import channel_scale, parse_quantity
 
 #: longest step of the time, in median steps, that is no hole
@@ -82,13 +83,11 @@ def check_span(table: SeriesTable, time: FloatArray, duration: float) -> None:
 
 def check_rate(table: SeriesTable, time: FloatArray, values: FloatArray, name: str) -> None:
     """Refuse a motion that its rows do not follow: half of them must predict the other half."""
-    from scipy.interpolate import CubicSpline
-
     size = float(np.std(values))
     if time.size < LEAST_ROWS_TO_THIN or size <= 1e-12 * float(np.max(np.abs(values))):
         return
     inside = slice(END_ROWS, time.size - END_ROWS, 2)
-    predicted = CubicSpline(time[::2], values[::2])(time[inside])
+    predicted = spline(time[::2], values[::2])(time[inside])
     miss = float(np.sqrt(np.mean((predicted - values[inside]) ** 2))) / size
     if miss > COARSE:
         rate = (time.size - 1) / time[-1]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tethertest.records.arrays import FloatArray
-from tethertest.records.scene import MeasuredMotion, Scene
+from tethertest.records.scene import Bottom, MeasuredMotion, Scene
 from tethertest.solver.linear.axial_waves import out_of_plane_slope
 from tethertest.solver.linear.coupled import CoupledCable, coupled_cable, end_angle, end_body, local_direction
 from tethertest.solver.linear.transform import CoupledResponse, refined_response
@@ -60,7 +60,7 @@ def solve_coupled(
     output = scene.output
     rows = math.floor(output.duration * output.rate + 1e-9) + 1
     gauges = np.asarray(output.gauges, dtype=np.float64) if stations is None else stations
-    motion = continued(scene, measured)
+    motion = continued(scene.bottom, measured)
     response, error, factor = refined_response(
         cable,
         motion,
@@ -95,14 +95,14 @@ def swung(response: CoupledResponse, cable: CoupledCable, slope: FloatArray) -> 
     )
 
 
-def continued(scene: Scene, measured: MeasuredMotion | None) -> Callable[[FloatArray], FloatArray]:
+def continued(bottom: Bottom, measured: MeasuredMotion | None) -> Callable[[FloatArray], FloatArray]:
     """Return the motion at any time; data that end with the record go on as their own mirror image."""
 
     def motion(time: FloatArray) -> FloatArray:
         if measured is None:
-            return displacement(scene.bottom, time, measured)
+            return displacement(bottom, time, measured)
         end = float(measured.time[-1])
-        inside = displacement(scene.bottom, np.where(time > end, 2.0 * end - time, time), measured)
+        inside = displacement(bottom, np.where(time > end, 2.0 * end - time, time), measured)
         return np.where(time > end, 2.0 * float(measured.displacement[-1]) - inside, inside)
 
     return motion

@@ -90,12 +90,12 @@ def _along(problem: Problem) -> Refined:
         return _exact_waves(problem)
     name = "exact transform along the cable"
     if problem.cells is not None:
-        solution = run_axial_transform(scene, measured=measured)
+        solution = run_axial_transform(scene, measured=measured, with_field=problem.with_field)
         return Refined(solution, "linear", name, problem.cells, np.nan, Status.UNJUDGED)
     coarse = run_axial_transform(scene, measured=measured, factor=_FACTORS[0], with_field=False)
     error = np.inf
     for factor in _FACTORS[1:]:
-        fine = run_axial_transform(scene, measured=measured, factor=factor)
+        fine = run_axial_transform(scene, measured=measured, factor=factor, with_field=problem.with_field)
         error = problem.apart(coarse.tension, fine.tension) + _ROUNDING
         coarse = fine
         if error <= problem.tolerance:

@@ -8,13 +8,14 @@ referred to the end that they leave and only decay from there, so nothing overfl
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
-from tethertest.records.scene import MeasuredMotion, Scene
+from tethertest.records.scene import Bottom, MeasuredMotion, Scene
 from tethertest.solver.linear.axial_waves import axial_fields, axial_share, output_times
 from tethertest.solver.linear.coupled_solve import continued
 from tethertest.solver.linear.transform import TransformDrive, TransformLine
@@ -49,12 +50,12 @@ def axial_transfer(scene: Scene, s: ComplexArray, gauges: FloatArray) -> AxialTr
     gauges : (g,) float64
         Fractions of the length from the bottom.
     """
-    waves = _EndWaves.of(scene, np.asarray(s, dtype=np.complex128)[:, None])
-    place = waves.length * np.asarray(gauges, dtype=np.float64)[None, :]
+    waves = _EndWaves.of(scene, np.asarray(s, dtype=np.complex128))
+    place = waves.length * np.asarray(gauges, dtype=np.float64)[:, None]
     rising = np.exp(-waves.number * place)
     falling = waves.reflection * np.exp(-waves.number * (2.0 * waves.length - place))
     strain = waves.number * waves.size * (falling - rising)
-    return AxialTransfer(waves.stiffness * strain, strain, waves.size * (rising + falling))
+    return AxialTransfer((waves.stiffness * strain).T, strain.T, (waves.size * (rising + falling)).T)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,6 +83,17 @@ class _EndWaves:
             reflection = (stiffness * number - body) / (stiffness * number + body)
         size = 1.0 / (1.0 + reflection * np.exp(-2.0 * number * rest.length))
         return cls(rest.length, stiffness, number, reflection, size)
+
+
+@lru_cache(maxsize=2)  # variations of a rig are driven by one motion
+def _driven(
+    bottom: Bottom, measured: MeasuredMotion | None, share: float, line: TransformLine, factor: int
+) -> tuple[TransformDrive, ComplexArray]:
+    """Return the share of a motion that goes along the cable, from where it starts, and its transform."""
+    motion = continued(bottom, measured)
+    start = float(motion(np.zeros(1))[0])
+    drive = TransformDrive.sampled(lambda instant: share * (motion(instant) - start), line, factor)
+    return drive, drive.spectrum(line.frequencies(factor))
 
 
 def _tension_along(scene: Scene, s: ComplexArray, stations: int) -> ComplexArray:
@@ -146,9 +158,7 @@ def run_axial_transform(
     share, rest, output = axial_share(scene), rest_state(scene), scene.output
     time = output_times(scene, None)
     line = TransformLine.over(time.size, output.rate)
-    motion = continued(scene, measured)
-    start = float(motion(np.zeros(1))[0])
-    drive = TransformDrive.sampled(lambda instant: share * (motion(instant) - start), line, factor)
+    drive, spectrum = _driven(scene.bottom, measured, share, line, factor)
     if drive.start_velocity:
         message = (
             f"scene {scene.name!r}: the bottom starts at {drive.start_velocity:.3g} m/s: a transform rings "
@@ -157,7 +167,7 @@ def run_axial_transform(
         remedy = 'set [bottom] start = "ramp", begin data at rest, or set axial_damping_time to 0'
         raise DataError(message, remedy)
     s = line.frequencies(factor)
-    spectrum, growth = drive.spectrum(s), np.exp(line.eta * time)
+    growth = np.exp(line.eta * time)
 
     def inverted(transfer: ComplexArray) -> FloatArray:
         """Return the time series (rows, g) of a transfer (g, n)."""

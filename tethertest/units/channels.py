@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from tethertest.errors import QuantityError
+from tethertest.units.common import common_factor
 from tethertest.units.registry import STANDARD_GRAVITY, is_ratio, is_voltage_ratio, parse_unit, si_unit
 
 #: kind of channel -> SI unit of its values ("" where the logger's own unit stays)
@@ -90,6 +91,10 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
         return UnitScale("temperature", "K", 5.0 / 9.0, 459.67 * 5.0 / 9.0)
     if not text and kind is None:
         return UnitScale("other", "", 1.0)
+    likely = _likely_kind(text) if kind is None else kind
+    common = common_factor(text, KINDS.get(likely, ""))
+    if common is not None and (likely != "ratio" or text == "mV/V"):
+        return UnitScale(likely, KINDS[likely], common)
     quantity = parse_unit(text)
     dimension = quantity.dimensionality
     found = kind if kind is not None else _kind_of(text, quantity)
@@ -107,6 +112,14 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
         message = f"unit {written!r} has dimension {dimension}, expected one of {found} ({target})"
         raise QuantityError(message, "correct the sensor's kind in the rig file or the log's units")
     return UnitScale(found, target, float(quantity.to(unit).magnitude))
+
+
+def _likely_kind(text: str) -> str:
+    """Return the kind of a common unit that has a dimension, else nothing."""
+    if text == "nm":
+        return "wavelength"
+    kinds = (kind for kind in _KINDS_BY_DIMENSION if KINDS[kind] != "1")
+    return next((kind for kind in kinds if common_factor(text, KINDS[kind]) is not None), "")
 
 
 def _kind_of(text: str, quantity: Any) -> str:

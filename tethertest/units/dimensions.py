@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from tethertest.units.common import SI_UNITS
 from tethertest.units.registry import parse_unit
 
 _NAMES = {"[length]": "L", "[mass]": "M", "[time]": "T", "[temperature]": "K", "[current]": "A"}
@@ -27,6 +28,9 @@ def dimension_of(unit: str) -> dict[str, Fraction]:
     QuantityError
         The unit is not known.
     """
+    common = SI_UNITS.get(unit)
+    if common is not None:
+        return {name: Fraction(power) for name, power in common.dimension.items()}
     exponents = parse_unit(unit).dimensionality
     return {
         _NAMES.get(name, name): Fraction(power).limit_denominator(1000)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tethertest.errors import QuantityError
+from tethertest.units.common import common_factor
 from tethertest.units.registry import parse_unit, si_unit
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -107,6 +108,9 @@ def _single(text: str, unit: str, *, difference: bool = False) -> float:
     if not written and unit != "1":
         message = f"found {text!r} without a unit, expected a quantity in {unit}"
         raise QuantityError(message, f'add the unit: "{text.strip()} {unit}"')
+    common = common_factor(written, unit)
+    if common is not None:
+        return _finite(number * common, text)
     target = si_unit(unit)
     if unit == "K" and written.lower() in {"degc", "°c", "℃", "deg c"} and not difference:
         return _finite(number + 273.15, text)

@@ -56,5 +56,9 @@ lint: setup  ## style, types, layers
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-schema: setup  ## write the JSON schemas of run, rig, prototype and scene files
-	for kind in run rig prototype scene; do $(BIN)/tethertest schema $$kind > rigs/schema/$$kind.schema.json; done
+FILES := run rig prototype scene
+COMMANDS := report analyze across inspect solve scale ingest export new
+
+schema: setup  ## write the JSON schemas of the files that people write, and of what commands print
+	for kind in $(FILES); do $(BIN)/tethertest schema $$kind > rigs/schema/$$kind.schema.json; done
+	for kind in $(COMMANDS); do $(BIN)/tethertest schema $$kind > docs/schema/$$kind.schema.json; done

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from tethertest.pipeline.inspect import inspected
 from tethertest.pipeline.remarks import grouped, some
+from tethertest.render.as_json import as_json
 
 #: what stands below this line of the page is written by hand, and kept
 BY_HAND: Final = "<!-- written by hand from here on -->"
@@ -51,10 +52,10 @@ def rows_of(folder: Path, settings: Sequence[tuple[str, str]] = ()) -> list[tupl
         if any(part.startswith(".") for part in Path(name).parts):
             continue
         words = [word for file, word in settings if file == name]
-        rows.append(_row(name, inspected(path), folder))
+        rows.append(_row(name, as_json(inspected(path)), folder))
         if words:
             given = " ".join(f"--set {word}" for word in words)
-            rows.append(_row(f"{name} {given}", inspected(path, words=words), folder))
+            rows.append(_row(f"{name} {given}", as_json(inspected(path, words=words)), folder))
     return rows
 
 

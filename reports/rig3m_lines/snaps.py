@@ -11,7 +11,7 @@ from reports.rig3m_lines.findings import Clock, Complaints, allowed_misses, medi
 from tethertest.records.analysis import ChannelAnalysis
 from tethertest.records.events import Snap
 from tethertest.spectra.events import find_events, slack_intervals
-from tethertest.spectra.snaps import measured_snaps
+from tethertest.spectra.snaps import with_snaps
 
 #: a snap counts from this peak on [N]: a tenth of it, where its rise begins, is the statement's threshold
 FLOOR = 1.5
@@ -106,8 +106,7 @@ def thinned(item: ChannelAnalysis, count: int) -> ChannelAnalysis:
     """Return the snaps that a logger finds that takes every so many samples, without a filter."""
     whole = item.channel
     part = replace(whole, time=whole.time[::count], values=whole.values[::count], flags=whole.flags[::count])
-    events = find_events(part)
-    return replace(item, channel=part, events=events, snaps=measured_snaps(part, events))
+    return replace(item, channel=part, events=with_snaps(part, find_events(part)))
 
 
 class SnapCheck:

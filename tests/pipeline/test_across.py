@@ -11,15 +11,18 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from tests.schema_check import faults
 from tethertest.cli import app
 from tethertest.cli.across import _print
 from tethertest.errors import TethertestError
 from tethertest.pipeline.across import analyze_across, gathered
 from tethertest.pipeline.analysis_options import Options
+from tethertest.pipeline.schemas import schema_of
 from tethertest.records.across import Across, Direction, RunChannel, RunPart, StepVerdict
 from tethertest.records.channel import Window
 from tethertest.records.lines import ChannelLines, Line, LineVerdict
 from tethertest.render.across import across_summary, write_across
+from tethertest.render.as_json import as_json
 
 CAMPAIGN = Path(__file__).parents[2] / "datasets" / "rig3m"
 FREQUENCIES = np.round(np.arange(0.1, 0.5, 0.02), 3)
@@ -98,7 +101,8 @@ def test_a_damaged_run_is_shown_and_changes_no_judgement(there_and_back: Across)
     up = next(c for c in again.curves if c.order == "1" and c.direction is Direction.UP)
     assert [point.damage for point in up.points if point.run == "run06"] == ["half the window is missing"]
     assert [step.interval for step in up.judgement.steps] == [pytest.approx((0.36, 0.38))]
-    found = across_summary(again)
+    found = as_json(across_summary(again))
+    assert faults(found, schema_of("across")) == []
     assert [run["refused"] for run in found["runs"] if run["run"] == "run99"] == ["tension.lvm is cut"]
 
 
@@ -126,12 +130,12 @@ def test_the_largest_amplitude_is_one_of_a_line_that_is_there_and_judged() -> No
     parts = [part(place, 0.2 + 0.1 * place, 1.0, half) for place, half in enumerate(halves)]
     (channel,) = parts[0].channels
     parts[0] = replace(parts[0], channels=(replace(channel, damage="half the window is missing"),))
-    found = across_summary(gathered("runs", parts))
+    found = as_json(across_summary(gathered("runs", parts)))
     largest = {curve["order"]: curve["largest"] for curve in found["curves"]}
     assert (largest["1/2"]["run"], largest["1/2"]["amplitude"]) == ("run02", 0.3)
     # what is there in the damaged run alone is on no other
     parts[2] = part(2, 0.4, 1.0, 0.009)
-    found = across_summary(gathered("runs", parts))
+    found = as_json(across_summary(gathered("runs", parts)))
     assert {curve["order"]: curve["largest"] for curve in found["curves"]}["1/2"] is None
 
 
@@ -142,7 +146,7 @@ def test_the_terminal_says_where_a_branch_has_no_line(capsys: pytest.CaptureFixt
     halves = (*np.full(count - 1, 0.3), 0.009)
     there = [part(place, float(FREQUENCIES[place]), 1.0, half) for place, half in enumerate(halves)]
     back = [part(count + place, float(FREQUENCIES[-2 - place]), 1.0, 0.009) for place in range(count - 1)]
-    _print(across_summary(gathered("runs", [*there, *back])))
+    _print(as_json(across_summary(gathered("runs", [*there, *back]))))
     rows = [line for line in capsys.readouterr().out.splitlines() if line.split()[1:2] == ["1/2"]]
     # the loop of both comes last
     assert [(row.split()[2], "no line" in row) for row in rows[:2]] == [("up", False), ("down", True)]

@@ -13,6 +13,7 @@ from tethertest.errors import TethertestError
 from tethertest.pipeline.analysis_options import asked_options
 from tethertest.pipeline.analyze import analyze
 from tethertest.render.analysis import analysis_summary
+from tethertest.render.as_json import as_json
 
 CAMPAIGN = Path(__file__).parents[2] / "datasets" / "rig3m"
 
@@ -35,7 +36,7 @@ def log(tmp_path: Path) -> Path:
 
 
 def test_a_bare_log_gives_the_orders_of_a_named_drive(log: Path) -> None:
-    found = analysis_summary(analyze(log, asked_options(channels=("force",), drive_frequency="0.5")))
+    found = as_json(analysis_summary(analyze(log, asked_options(channels=("force",), drive_frequency="0.5"))))
     assert found["drive"]["frequency"] == pytest.approx(0.5, abs=1e-4)
     (channel,) = found["channels"]
     lines = {line["order"]: line for line in channel["lines"]}
@@ -49,7 +50,7 @@ def test_a_bare_log_gives_the_orders_of_a_named_drive(log: Path) -> None:
 
 
 def test_without_a_drive_a_blind_search_says_so(log: Path) -> None:
-    found = analysis_summary(analyze(log, asked_options()))
+    found = as_json(analysis_summary(analyze(log, asked_options())))
     assert found["drive"] is None
     names = [channel["name"] for channel in found["channels"]]
     assert names == ["force"]  # the constant one is left out, and that is said
@@ -107,7 +108,7 @@ def test_holes_and_short_logs_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_run_gives_lines_waves_and_fronts() -> None:
-    found = analysis_summary(analyze(CAMPAIGN / "run09", asked_options()))
+    found = as_json(analysis_summary(analyze(CAMPAIGN / "run09", asked_options())))
     truth = json.loads((CAMPAIGN / "run09" / "truth.json").read_text(encoding="utf-8"))
     top = next(channel for channel in found["channels"] if channel["name"] == "tension_top")
     line = next(line for line in top["lines"] if line["order"] == "1")

@@ -96,7 +96,7 @@ def test_scale_refuses_a_drive_that_is_none(
     assert err.startswith(f"error: {option}: found '{text}'")
 
 
-@pytest.mark.parametrize("kind", ["run", "rig", "prototype", "scene"])
+@pytest.mark.parametrize("kind", ["rig", "report"])
 def test_schema_prints_a_json_schema(
     kind: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

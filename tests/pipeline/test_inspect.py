@@ -21,6 +21,7 @@ from tethertest.pipeline.inspect import described, inspect_path, inspected
 from tethertest.readers import read_log
 from tethertest.readers.config.structure import structure
 from tethertest.records.run import Log
+from tethertest.render.as_json import as_json
 
 ROOT = Path(__file__).parents[2]
 RUN = ROOT / "datasets" / "rig3m" / "run04"
@@ -66,7 +67,7 @@ def signal(seconds: float = 20.0, noise: float = 0.02) -> tuple[Any, Any]:
 
 
 def flags(path: Path) -> dict[str, dict[str, int]]:
-    return {channel["name"]: channel["flags"] for channel in inspect_path(path)["channels"]}
+    return {channel["name"]: channel["flags"] for channel in as_json(inspect_path(path))["channels"]}
 
 
 def test_a_log_that_leaves_something_open_is_refused_and_says_what_to_set(
@@ -99,10 +100,11 @@ def test_a_wrong_setting_is_an_error_of_the_call_not_of_the_file(typed: Typed, a
 
 
 def test_a_setting_that_the_file_contradicts_is_told_as_the_option(ambiguous: Path) -> None:
-    found = inspected(ambiguous, words=["date_order=dmy", "units.F_bottom=N"])
+    found = as_json(inspected(ambiguous, words=["date_order=dmy", "units.F_bottom=N"]))
     assert found["refused"]
     assert found["message"] == "--set gives a unit for 'F_bottom', which the log does not have"
-    assert "run.toml" not in inspect_path(ambiguous, words=["date_order=dmy", "format=delimited"])["reason"]
+    found = as_json(inspect_path(ambiguous, words=["date_order=dmy", "format=delimited"]))
+    assert "run.toml" not in found["reason"]
 
 
 def test_settings_are_for_bare_logs(typed: Typed) -> None:
@@ -141,7 +143,7 @@ def test_a_refused_file_is_one_object_with_line_message_and_remedy(typed: Typed,
 def test_a_file_that_no_reader_claims_or_that_is_not_there_is_refused_alike(tmp_path: Path) -> None:
     (tmp_path / "scan.pdf").write_bytes(b"%PDF-1.7\n\x00\x01")
     for name in ("scan.pdf", "none.csv"):
-        said = inspected(tmp_path / name)
+        said = as_json(inspected(tmp_path / name))
         assert (said["refused"], said["format"], said["reason"]) == (True, None, None)
         assert said["message"]
         assert said["remedy"]
@@ -151,7 +153,7 @@ def test_a_file_that_no_reader_claims_or_that_is_not_there_is_refused_alike(tmp_
 def test_a_pipe_is_refused_and_not_waited_for(typed: Typed, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     for words in ((), ("--set", "decimal=,")):
-        assert inspected(tmp_path / "pipe", words=words[1:])["message"].startswith("found a pipe")
+        assert as_json(inspected(tmp_path / "pipe", words=words[1:]))["message"].startswith("found a pipe")
         code, _, err = typed("analyze", tmp_path / "pipe", *words)
         assert (code, "found a pipe or a device, expected a file" in err) == (2, True)
 
@@ -182,7 +184,7 @@ def test_one_bad_log_of_a_run_hides_no_other(typed: Typed, tmp_path: Path) -> No
 
 
 def test_the_entry_for_run_toml_is_toml_that_reads_the_log_the_same_way(ambiguous: Path) -> None:
-    found = inspect_path(ambiguous, words=["date_order=mdy", "encoding=utf-8"])
+    found = as_json(inspect_path(ambiguous, words=["date_order=mdy", "encoding=utf-8"]))
     (entry,) = tomllib.loads(found["entry"])["log"]
     assert (entry["file"], entry["date_order"], entry["encoding"]) == ("daq.csv", "mdy", "utf-8")
     assert entry["units"] == {"F_top": "TODO"}
@@ -219,7 +221,7 @@ def _one_channel() -> tuple[Any, dict[str, Any]]:
 
 
 def test_even_time_is_called_even(tmp_path: Path) -> None:
-    (base,) = inspect_path(log(tmp_path / "a.csv", *_one_channel()))["time_bases"]
+    (base,) = as_json(inspect_path(log(tmp_path / "a.csv", *_one_channel())))["time_bases"]
     assert base["text"].endswith("every 5 ms, even")
     assert (base["uneven"], base["flags"]) == (
         0, {"missing_time": 0, "duplicate_time": 0, "backward_time": 0, "gap": 0},
@@ -230,7 +232,7 @@ def test_a_log_with_dropped_rows_everywhere_is_jittered_with_share_and_mean_rate
     time, values = signal()
     kept = np.random.default_rng(1).random(time.size) > 0.25
     path = log(tmp_path / "a.csv", time[kept], {"F [N]": values[kept]})
-    (base,) = inspect_path(path)["time_bases"]
+    (base,) = as_json(inspect_path(path))["time_bases"]
     steps = np.diff(time[kept])
     share = np.mean(steps > 1.5 / RATE)
     assert base["uneven"] == np.count_nonzero(steps > 1.5 / RATE)
@@ -245,7 +247,7 @@ def test_jitter_of_the_stamps_is_given_in_seconds(tmp_path: Path) -> None:
     path = log(
         tmp_path / "a.csv", time + np.random.default_rng(2).normal(0.0, 8e-5, time.size), {"F [N]": values}
     )
-    (base,) = inspect_path(path)["time_bases"]
+    (base,) = as_json(inspect_path(path))["time_bases"]
     assert base["jitter"] == pytest.approx(np.sqrt(2.0) * 8e-5, rel=0.1)
     assert "jittered by 11" in base["text"]
     assert base["flags"]["gap"] == 0
@@ -255,7 +257,7 @@ def test_stamps_that_repeat_are_not_counted_as_uneven_too(tmp_path: Path) -> Non
     time, values = signal()
     time = time.copy()
     time[500:2000:100] = time[499:1999:100]
-    (base,) = inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values}))["time_bases"]
+    (base,) = as_json(inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values})))["time_bases"]
     assert base["flags"]["duplicate_time"] == 15
     assert base["uneven"] == 15  # the steps behind them, twice as long
 
@@ -266,7 +268,7 @@ def test_a_gap_a_repeat_and_a_row_out_of_place_are_each_told_once(tmp_path: Path
     time, values = time[kept].copy(), values[kept]
     time[2001] = time[2000]
     time[[3000, 3001]] = time[[3001, 3000]]
-    (base,) = inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values}))["time_bases"]
+    (base,) = as_json(inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values})))["time_bases"]
     assert base["flags"] == {"missing_time": 0, "duplicate_time": 1, "backward_time": 1, "gap": 2}
     assert "2 gaps, the longest 1.005 s after 4.995 s" in base["text"]
     assert "1 stamp repeated, at 11" in base["text"]
@@ -275,7 +277,7 @@ def test_a_gap_a_repeat_and_a_row_out_of_place_are_each_told_once(tmp_path: Path
 
 def test_negative_time_is_seen_as_it_is(tmp_path: Path) -> None:
     time, values = signal()
-    (base,) = inspect_path(log(tmp_path / "a.csv", time - 3.0, {"F [N]": values}))["time_bases"]
+    (base,) = as_json(inspect_path(log(tmp_path / "a.csv", time - 3.0, {"F [N]": values})))["time_bases"]
     assert (base["first"], base["last"]) == (-3.0, pytest.approx(16.995))
 
 
@@ -323,7 +325,7 @@ def test_a_snap_is_kept_and_a_spike_is_not(tmp_path: Path) -> None:
 def test_a_dead_channel_and_a_state_are_named(tmp_path: Path) -> None:
     time, values = signal()
     columns = {"F [N]": values, "dead [N]": np.full(time.size, 7.0), "phase": (time > 9.0) * 2.0}
-    found = inspect_path(log(tmp_path / "a.csv", time, columns))
+    found = as_json(inspect_path(log(tmp_path / "a.csv", time, columns)))
     assert "channel 'dead': constant, all values are 7" in found["remarks"]
     assert any(item.startswith("channel 'phase': changes only 1 times") for item in found["remarks"])
     of = {channel["name"]: channel["flags"] for channel in found["channels"]}
@@ -334,7 +336,7 @@ def test_a_dead_channel_and_a_state_are_named(tmp_path: Path) -> None:
 def test_a_number_that_stands_for_no_value_is_told(tmp_path: Path, code: float, is_told: bool) -> None:
     time, values = signal()
     values[[10, 20, 1000]] = code
-    remarks = inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values}))["remarks"]
+    remarks = as_json(inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values})))["remarks"]
     assert any(item.startswith(f"channel 'F': 3 values are {code:g}") for item in remarks) is is_told
 
 
@@ -343,7 +345,7 @@ def test_a_force_of_999_among_or_little_above_others_is_no_code(tmp_path: Path, 
     time, values = signal()
     values = np.round(scale * values)
     values[5] = 999.0
-    assert not inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values}))["remarks"]
+    assert not as_json(inspect_path(log(tmp_path / "a.csv", time, {"F [N]": values})))["remarks"]
 
 
 def test_a_folder_that_is_no_run_is_refused(tmp_path: Path) -> None:
@@ -358,7 +360,7 @@ def test_absurd_numbers_are_described_and_break_nothing(tmp_path: Path, absurd: 
     for row in (5, 6, 900):
         lines[row] = f"{lines[row].split(',')[0]},{absurd}"
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    said = json.loads(json.dumps(inspect_path(path), allow_nan=False))
+    said = as_json(inspect_path(path))
     beyond = any("3 values are beyond 1e+30" in remark for remark in said["remarks"])
     assert beyond is (abs(float(absurd)) > 1e30)
 
@@ -368,18 +370,18 @@ def test_stamps_that_are_missing_or_infinite_are_counted(tmp_path: Path) -> None
     (channel,) = read.channels
     time, values = channel.time.copy(), channel.values.copy()
     time[[3, 700]], values[[9, 10]] = np.nan, np.inf
-    said = described(replace(read, channels=(replace(channel, time=time, values=values),)), {})
+    said = as_json(described(replace(read, channels=(replace(channel, time=time, values=values),)), {}))
     json.dumps(said, allow_nan=False)
     assert said["channels"][0]["flags"]["missing_time"] == 2
     assert said["channels"][0]["flags"]["missing"] == 2
     assert "2 rows without a stamp" in said["time_bases"][0]["text"]
     nowhere = described(replace(read, channels=(replace(channel, time=np.full(time.size, np.nan)),)), {})
-    assert nowhere["time_bases"][0]["text"] == "0 stamps, no rate"
-    assert nowhere["channels"][0]["rate"] is None
+    assert nowhere.time_bases[0].text == "0 stamps, no rate"
+    assert nowhere.channels[0].rate is None
 
 
 def test_an_absurd_rate_breaks_nothing(tmp_path: Path) -> None:
     path = tmp_path / "bare.csv"
     path.write_text("\n".join(f"{row};{row % 40 // 20}" for row in range(4000)) + "\n", encoding="utf-8")
     words = ["columns=n,x", "rate=1e300 Hz", "units.x=mm"]
-    assert inspected(path, words=words)["channels"][1]["kind"] == "displacement"
+    assert as_json(inspected(path, words=words))["channels"][1]["kind"] == "displacement"

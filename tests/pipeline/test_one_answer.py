@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.schema_check import faults
 from tethertest.pipeline.across_runs import run_part
 from tethertest.pipeline.analysis_options import Options
 from tethertest.pipeline.analyze import analyze
 from tethertest.pipeline.ingest import ingest_run
 from tethertest.pipeline.report import make_report
+from tethertest.pipeline.schemas import schema_of
 from tethertest.records.across import RunPart
 from tethertest.records.analysis import MEASURED, REPLAYED, Analysis
 from tethertest.records.lines import ChannelLines
 from tethertest.records.report import Report
 from tethertest.render.analysis import analysis_summary
+from tethertest.render.as_json import as_json, json_line
 from tethertest.render.page import page
+from tethertest.render.summary import summary
 
 ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "rigs"
@@ -100,6 +103,22 @@ def test_events_are_the_same(answers: Answers) -> None:
         assert events == tuple(e for item in analysis.channels if item.side == side for e in item.events)
 
 
+def test_json_keeps_to_the_published_schemas(answers: Answers) -> None:
+    printed = {**as_json(summary(answers.report)), "paths": ["report.html"]}
+    assert faults(printed, schema_of("report")) == []
+    for analysis in (answers.analysis, answers.of_store):
+        assert faults(as_json(analysis_summary(analysis)), schema_of("analyze")) == []
+
+
+def test_lines_and_events_have_the_same_json(answers: Answers) -> None:
+    reported, analysed = as_json(summary(answers.report)), as_json(analysis_summary(answers.analysis))
+    channels = {item["name"]: item for item in analysed["channels"] if item["side"] == MEASURED}
+    assert {item["name"] for item in reported["lines"]["channels"]} == channels.keys()
+    for item in reported["lines"]["channels"]:
+        assert item["lines"] == channels[item["name"]]["lines"]
+        assert item["events"] == channels[item["name"]]["events"]
+
+
 def test_findings_of_the_report_are_notes_of_the_analysis(answers: Answers) -> None:
     severe = [
         f"{found.subject}: {found.text}"
@@ -112,7 +131,7 @@ def test_findings_of_the_report_are_notes_of_the_analysis(answers: Answers) -> N
 
 def test_a_verdict_has_one_word(answers: Answers) -> None:
     shown = page(answers.report)
-    printed = json.dumps(analysis_summary(answers.analysis))
+    printed = json_line(analysis_summary(answers.analysis))
     assert '"verdict": "harmonic"' in printed
     assert ">harmonic<" in shown
     assert ">drive<" not in shown

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tethertest.readers import read_log
-from tethertest.readers.inspect import describe
+from tethertest.readers.inspect import described_channels
 from tethertest.readers.streaming import stream_log
 
 VALUES = [[5.125, -0.5, 1234.75, 0.0, 1e-6], [-12.5, 0.0625, 3.0, 99.999, -7.25]]
@@ -90,7 +90,7 @@ def test_chinese_acquisition_systems(write, encoding, header, units, separator):
     text += written(zip(TIME, *VALUES, strict=True), separator, ".")
     log = read_log(write(text, encoding=encoding, line_end="\r\n"))
     assert_read(log, ["拉力", "应变"], units)
-    kinds = [(channel["kind"], channel["unit"]) for channel in describe(log)["channels"]]
+    kinds = [(channel.kind, channel.unit) for channel in described_channels(log)[0]]
     assert kinds == [("tension", "N"), ("strain", "1")]
 
 

@@ -18,6 +18,7 @@ from tethertest.pipeline.exports.source import SeriesInMemory, time_bases
 from tethertest.pipeline.inspect import inspect_path
 from tethertest.readers import read_log
 from tethertest.records.channel import Channel, ConditionedRun, Flag
+from tethertest.render.as_json import as_json
 from tethertest.store import StoreHeader, write_store
 
 ROOT = Path(__file__).parents[2]
@@ -64,7 +65,7 @@ def test_our_own_reader_takes_the_csv_back_to_the_last_bit(
         assert np.array_equal(read.time, channel.time)
     flags = [channel for channel in log.channels if channel.name.endswith(" flags")]
     assert np.array_equal(flags[0].values, pair[1][0].flags)
-    said = inspect_path(tmp_path / "out.csv")["channels"]
+    said = as_json(inspect_path(tmp_path / "out.csv"))["channels"]
     assert [said[0]["unit"], said[2]["kind"]] == ["N", "strain"]
 
 

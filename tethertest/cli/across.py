@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,7 +22,10 @@ def analyze_runs(
     """Analyse the runs of a folder together, and print or write what they show."""
     from tethertest.errors import TethertestError
     from tethertest.pipeline.across import analyze_across
-    from tethertest.render.across import across_summary, write_across
+    from tethertest.render.across import PrintedAcross, across_summary, write_across
+    from tethertest.render.as_json import as_json as values_of
+    from tethertest.render.as_json import json_line
+    from tethertest.render.published import taken
 
     if jobs is not None and jobs < 1:
         message = f"--jobs: found {jobs}, expected 1 or more"
@@ -33,12 +35,11 @@ def analyze_runs(
         raise TethertestError(message, "choose another one", path=output)
     across = analyze_across(folder, options, jobs, _progress if sys.stderr.isatty() else None)
     paths = () if output is None else write_across(across, output)
-    found = across_summary(across)
+    found = taken(PrintedAcross, across_summary(across), paths=tuple(map(str, paths)))
     if as_json:
-        found["paths"] = [str(path) for path in paths]
-        typer.echo(json.dumps(found, ensure_ascii=False, allow_nan=False))
+        typer.echo(json_line(found))
         return
-    _print(found)
+    _print(values_of(found))
     if paths:
         typer.echo(f"written: {len(paths)} files in {output}")
 

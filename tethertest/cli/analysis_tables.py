@@ -74,7 +74,9 @@ def _print_channels(found: dict[str, Any]) -> None:
         if ends is None:
             continue
         slack = [event for event in channel["events"] if event["kind"] == "slack"]
-        snaps = [event for event in channel["events"] if event["kind"] == "snap"]
+        snaps = [
+            event for event in channel["events"] if event["kind"] == "snap" and event["front"] is not None
+        ]
         strongest = max(snaps, key=lambda snap: float(snap["front"]), default=None)
         rows.append(
             (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -47,7 +46,10 @@ def analyze(
     from tethertest.errors import TethertestError
     from tethertest.pipeline.analysis_options import asked_options
     from tethertest.pipeline.analyze import analyze as analyze_path
-    from tethertest.render.analysis import analysis_summary
+    from tethertest.render.analysis import WrittenAnalysis, analysis_summary
+    from tethertest.render.as_json import as_json as values_of
+    from tethertest.render.as_json import json_line
+    from tethertest.render.published import taken
 
     if output is not None and output.resolve() == path.resolve():
         message = "the output folder is the run folder, which holds raw data only"
@@ -73,13 +75,12 @@ def analyze(
         from tethertest.render.analysis_files import write_analysis
 
         written, left_out = write_analysis(made, output)
-        found["paths"] = [str(file) for file in written]
-        found["notes"] += left_out
+        found = taken(WrittenAnalysis, analysis_summary(made, left_out), paths=tuple(map(str, written)))
     if as_json:
-        typer.echo(json.dumps(found, ensure_ascii=False, allow_nan=False))
+        typer.echo(json_line(found))
         return
     from tethertest.cli.analysis_tables import print_analysis
 
-    print_analysis(found)
-    if output is not None:
-        typer.echo(f"  {len(found['paths'])} files  ->  {output}")
+    print_analysis(values_of(found))
+    if isinstance(found, WrittenAnalysis):
+        typer.echo(f"  {len(found.paths)} files  ->  {output}")

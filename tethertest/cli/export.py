@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -39,9 +38,9 @@ def export(
     from tethertest.pipeline.export import export as write
 
     made = write(run, to.value, output, rigs)
-    paths = [str(path) for path in made.paths]
     if as_json:
-        content = {"run": made.run, "format": made.format, "paths": paths}
-        typer.echo(json.dumps(content, ensure_ascii=False, allow_nan=False))
+        from tethertest.render.as_json import json_line
+
+        typer.echo(json_line(made))
         return
-    typer.echo(f"{made.run}: {made.format}  ->  {', '.join(paths)}")
+    typer.echo(f"{made.run}: {made.format}  ->  {', '.join(map(str, made.paths))}")

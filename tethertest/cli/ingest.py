@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -33,14 +32,9 @@ def ingest(
     with _bar() as progress:
         made = ingest_run(run, output, rigs, progress=progress)
     if as_json:
-        content = {
-            "run": made.run,
-            "path": str(made.path),
-            "size": made.size,
-            "channels": made.channels,
-            "findings": made.findings,
-        }
-        typer.echo(json.dumps(content, ensure_ascii=False, allow_nan=False))
+        from tethertest.render.as_json import json_line
+
+        typer.echo(json_line(made))
         return
     samples = sum(made.channels.values())
     found = ", ".join(f"{count} {severity}" for severity, count in made.findings.items()) or "none"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -26,17 +25,20 @@ def inspect(
 ) -> None:
     """Say what a log or run folder is and why it is read so: format, channels, units, rate, span, flags."""
     from tethertest.pipeline.inspect import inspected
+    from tethertest.render.as_json import as_json as values_of
+    from tethertest.render.as_json import json_line
 
     refused = False
     for item in path:
         found = inspected(item, rigs, settings or ())
-        refused |= found["refused"]
+        refused |= found.refused
         if as_json:
-            typer.echo(json.dumps(found, ensure_ascii=False, allow_nan=False))
+            typer.echo(json_line(found))
             continue
         from tethertest.cli.inspect_tables import print_log
 
-        for log in found.get("logs", [found]):
+        values = values_of(found)
+        for log in values.get("logs", [values]):
             print_log(log)
     if refused:
         raise typer.Exit(BAD_INPUT)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -22,33 +21,15 @@ def new(
     ] = False,
 ) -> None:
     """Look at the logs of a folder and write a commented run.toml to complete."""
-    from tethertest.pipeline.draft_text import TODO, draft_text
+    from tethertest.pipeline.draft_text import written_draft
     from tethertest.pipeline.new_run import new_run
+    from tethertest.render.as_json import json_line
 
     path, draft = new_run(run, logs or (), rigs)
-    left = [
-        f"{number}: {line}" for number, line in enumerate(draft_text(draft).splitlines(), 1) if TODO in line
-        and number > 2
-    ]  # fmt: skip
+    written = written_draft(path, draft)
     if as_json:
-        content = {
-            "path": str(path),
-            "rig": None if draft.rig == TODO else draft.rig,
-            "logs": [
-                {
-                    "file": log.file,
-                    "format": log.format,
-                    "clock": None if log.clock == TODO else log.clock,
-                    "channels": log.matched.guessed,
-                    "problem": log.problem or None,
-                }
-                for log in draft.logs
-            ],
-            "left_out": [file for file, _ in draft.left_out],
-            "todo": left,
-        }
-        typer.echo(json.dumps(content, ensure_ascii=False, allow_nan=False))
+        typer.echo(json_line(written))
         return
     typer.echo(f"{path}: {len(draft.logs)} logs, rig {draft.rig}; to complete:")
-    for line in left:
+    for line in written.todo:
         typer.echo(f"  {line}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -31,7 +30,7 @@ def report(
     """
     from tethertest.errors import TethertestError
     from tethertest.pipeline.report import make_report
-    from tethertest.render import summary, write_report
+    from tethertest.render import write_report
 
     folder = Path("reports") / run.resolve().name if output is None else output
     if folder.resolve() == run.resolve():
@@ -41,8 +40,11 @@ def report(
     paths = write_report(made, folder)
     verdict = made.comparison.verdict.value
     if as_json:
-        content = {**summary(made), "paths": [str(path) for path in paths]}
-        typer.echo(json.dumps(content, ensure_ascii=False, allow_nan=False))
+        from tethertest.render.as_json import json_line
+        from tethertest.render.published import taken
+        from tethertest.render.summary import PrintedSummary, summary
+
+        typer.echo(json_line(taken(PrintedSummary, summary(made), paths=tuple(map(str, paths)))))
     else:
         reason = made.comparison.reasons[0] if made.comparison.reasons else ""
         typer.echo(f"{verdict.upper()}  {made.run.file.id}: {reason}  ->  {paths[0]}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -25,11 +24,11 @@ def scale(
 ) -> None:
     """Compare a rig with its prototype: dimensionless groups, ratios and how distorted the model is."""
     from tethertest.pipeline.scale import scale_rig
-    from tethertest.render import similarity_summary
+    from tethertest.render.as_json import json_line
 
-    found = similarity_summary(scale_rig(rig, to, frequency, amplitude, mode))
+    found = scale_rig(rig, to, frequency, amplitude, mode)
     if as_json:
-        typer.echo(json.dumps(found, ensure_ascii=False, allow_nan=False))
+        typer.echo(json_line(found))
         return
     from rich.table import Table
 
@@ -41,20 +40,20 @@ def scale(
         table.add_column(heading, justify="right")
     for heading in ("level", "meaning"):
         table.add_column(heading)
-    for group in found["groups"]:
+    for group in found.groups:
         product = " ".join(
-            name if power == "1" else f"{name}^{power}" for name, power in group["exponents"].items()
+            name if power == 1 else f"{name}^{power}" for name, power in group.exponents.items()
         )
-        numbers = [group[key] for key in ("model", "prototype", "ratio")]
+        numbers = (group.model, group.prototype, group.ratio)
         table.add_row(
-            group["name"],
+            group.name,
             product,
             *("" if number is None else f"{number:.4g}" for number in numbers),
-            group["level"],
-            group.get("meaning", ""),
+            group.level,
+            group.meaning,
         )
     console.print(table)
-    for name, value in found["ratios"].items():
+    for name, value in found.ratios.items():
         console.print(f"prototype/model {name}: {value:.5g}")
-    for conflict in found["conflicts"]:
+    for conflict in found.conflicts:
         console.print(f"cannot hold together: {', '.join(conflict)}")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -95,7 +93,9 @@ def solve(
         write_files(output.parent, {output.name: writer(response)})
     found = solve_summary(response)
     if as_json:
-        typer.echo(json.dumps(asdict(found), ensure_ascii=False, allow_nan=False))
+        from tethertest.render.as_json import json_line
+
+        typer.echo(json_line(found))
     else:
         _print_summary(found)
     if not is_solved:

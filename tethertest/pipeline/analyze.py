@@ -15,15 +15,13 @@ from tethertest.pipeline.bare_log import bare_channels, check_usable
 from tethertest.pipeline.evaluation import Evaluation, open_evaluation
 from tethertest.pipeline.read_bare import settings_of_a_run
 from tethertest.pipeline.reservations import reservations
-from tethertest.pipeline.wave_findings import measured_waves, medium_of, pattern_remarks, replayed_waves
+from tethertest.pipeline.wave_findings import measured_waves, pattern_remarks, replayed_waves
 from tethertest.records.analysis import REPLAYED, Analysis, ChannelAnalysis
 from tethertest.records.channel import Channel, ConditionedRun, Window
 from tethertest.records.response import Response
 from tethertest.records.scene import Scene
 from tethertest.spectra.cycles import count_cycles, extremes
 from tethertest.spectra.resonances import resonance_notes
-from tethertest.spectra.snaps import measured_snaps
-from tethertest.spectra.waves import Medium
 from tethertest.store import is_store
 
 #: kinds of channels of a run that are analysed unless others are named
@@ -94,18 +92,14 @@ def analyze_run(
     measured = evaluation.measured
     wanted = _wanted(measured, channels)
     _check_window(evaluation)
-    window, drive, medium = (
-        evaluation.window,
-        evaluation.drive,
-        medium_of(evaluation.scene, evaluation.run.rig),
-    )
+    window, drive = evaluation.window, evaluation.drive
     notes = [
         f"{finding.subject}: {finding.text}"
         for finding in measured.findings
         if finding.severity != "note" and finding.kind != CALIBRATION
     ]
     found = [
-        _with_measures(_searched(evaluation, channel, named=channel.name in channels), window, medium)
+        _with_measures(_searched(evaluation, channel, named=channel.name in channels), window)
         for channel in wanted
     ]
     waves = measured_waves(
@@ -120,7 +114,7 @@ def analyze_run(
         response, start = _replay(evaluation)
         names = {channel.name for channel in wanted}
         found += [
-            _with_measures(evaluation.found(channel, REPLAYED), window, medium)
+            _with_measures(evaluation.found(channel, REPLAYED), window)
             for channel in evaluation.replayed
             if channel.name in names
         ]
@@ -139,7 +133,7 @@ def analyze_run(
     else:
         modulation = _modulation(found, evaluation.scene)
         notes += resonance_notes(drive.frequency, evaluation.natural_frequencies, modulation)
-        short = pattern_remarks(waves, medium, drive.frequency)
+        short = pattern_remarks(waves, evaluation.medium, drive.frequency)
         waves = replace(waves, remarks=(*waves.remarks, *short))
     return Analysis(
         path,
@@ -190,17 +184,14 @@ def _searched(evaluation: Evaluation, channel: Channel, *, named: bool) -> Chann
     return item
 
 
-def _with_measures(item: ChannelAnalysis, window: Window | None, medium: Medium) -> ChannelAnalysis:
-    """Return the analysis of a channel with its extremes and, of a tension, its snaps and load cycles."""
+def _with_measures(item: ChannelAnalysis, window: Window | None) -> ChannelAnalysis:
+    """Return the analysis of a channel with its extremes and, of a tension, its load cycles."""
     channel = item.channel
     part = channel if window is None else channel.between(window.start, window.stop)
     if not part.usable.any():
         return replace(item, no_events=item.no_events or "no usable sample in the window")
     item = replace(item, extremes=extremes(channel, window))
-    if channel.kind != "tension":
-        return item
-    snaps = measured_snaps(channel, item.events, medium)
-    return replace(item, snaps=snaps, cycles=count_cycles(channel, window))
+    return replace(item, cycles=count_cycles(channel, window)) if channel.kind == "tension" else item
 
 
 def _modulation(found: Sequence[ChannelAnalysis], scene: Scene) -> float | None:

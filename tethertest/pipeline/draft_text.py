@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
-from tethertest.pipeline.draft import Draft, DraftLog
+from tethertest.pipeline.draft import Draft, DraftLog, WrittenDraft, WrittenLog
 
 #: a value that a person must replace; no key accepts it
 TODO = "TODO"
@@ -16,6 +17,28 @@ SETTINGS = (
     'encoding = "gb18030"',
     'time_zone = "+08:00"',
 )
+
+
+def written_draft(path: Path, draft: Draft) -> WrittenDraft:
+    """Return what was written to a path, and what is left to a person."""
+    lines = enumerate(draft_text(draft).splitlines(), 1)
+    return WrittenDraft(
+        path=path,
+        rig=None if draft.rig == TODO else draft.rig,
+        logs=tuple(
+            WrittenLog(
+                log.file,
+                log.format,
+                None if log.clock == TODO else log.clock,
+                log.matched.guessed,
+                log.problem,
+            )
+            for log in draft.logs
+        ),
+        left_out=tuple(file for file, _ in draft.left_out),
+        # the first two lines say what a TODO is
+        todo=tuple(f"{number}: {line}" for number, line in lines if TODO in line and number > 2),
+    )
 
 
 def draft_text(draft: Draft) -> str:

@@ -28,6 +28,7 @@ from tethertest.pipeline.analysis_options import (
 )
 from tethertest.pipeline.expect import expectation
 from tethertest.pipeline.stored import run_of
+from tethertest.pipeline.wave_findings import medium_of
 from tethertest.readers import load_run, read_log
 from tethertest.records.analysis import MEASURED, REPLAYED, ChannelAnalysis
 from tethertest.records.channel import Channel, ConditionedRun, Finding, RawLog, Window
@@ -48,6 +49,8 @@ from tethertest.replay import (
 from tethertest.solver import FIRST_MESH, modes, solve
 from tethertest.spectra import find_events, find_lines, fit_drive
 from tethertest.spectra.crank_angle import CrankAngle, crank_angle
+from tethertest.spectra.snaps import with_snaps
+from tethertest.spectra.waves import Medium
 from tethertest.store import is_store, load_store
 
 #: finest mesh of a replay; a snap on the rig is not better known than this
@@ -176,6 +179,11 @@ class Evaluation:
         return replace(scene, output=replace(scene.output, fields=("velocity",)))
 
     @cached_property
+    def medium(self) -> Medium:
+        """The cable as its axial waves see it."""
+        return medium_of(self.scene, self.run.rig)
+
+    @cached_property
     def natural_frequencies(self) -> tuple[NaturalFrequency, ...]:
         """Of the scene, then those that were given."""
         return (*modes(self.scene).frequencies, *named_naturals(self.options))
@@ -287,7 +295,7 @@ class Evaluation:
         channel = item.channel
         if channel.kind == "tension":
             try:
-                item = replace(item, events=find_events(channel))
+                item = replace(item, events=with_snaps(channel, find_events(channel), self.medium))
             except DataError as error:
                 item = replace(item, no_events=error.problem)
         if self.drive is None:

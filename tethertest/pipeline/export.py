@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Annotated
 
 from tethertest.errors import TethertestError
 from tethertest.pipeline.analysis_options import Options
@@ -18,6 +19,7 @@ from tethertest.pipeline.exports.parquet import check_parquet, write_parquet
 from tethertest.pipeline.exports.sep005 import write_sep005
 from tethertest.pipeline.exports.source import Exported, SeriesInMemory, time_bases
 from tethertest.pipeline.stored import run_of, store_header
+from tethertest.records.described import Doc
 from tethertest.store import is_store, open_store, written_whole
 from tethertest.store.whole import WholeFile
 
@@ -29,9 +31,9 @@ FORMATS = {"csv": ".csv", "parquet": ".parquet", "mat": ".mat", "sep005": ".json
 class Export:
     """What was written."""
 
-    run: str
-    format: str
-    paths: tuple[Path, ...]
+    run: Annotated[str, Doc("its id")]
+    format: Annotated[str, Doc("csv, parquet, mat or sep005")]
+    paths: Annotated[tuple[Path, ...], Doc("files that were written")]
 
 
 def export(path: Path, form: str, output: Path | None = None, rigs: Path | None = None) -> Export:

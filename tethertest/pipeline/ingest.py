@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Annotated
 
 from tethertest.errors import TethertestError
 from tethertest.pipeline.analysis_options import Options
@@ -17,6 +18,7 @@ from tethertest.pipeline.long_runs.pieces import pieces_of
 from tethertest.pipeline.stored import store_header
 from tethertest.readers import read_log
 from tethertest.records.channel import Finding
+from tethertest.records.described import Doc
 from tethertest.records.run import Run
 from tethertest.store import is_store, write_store
 
@@ -32,11 +34,11 @@ UNPACKED, _PACKED = 5, (b"\x1f\x8b", b"PK")
 class Ingested:
     """What was written."""
 
-    run: str  #: its id
-    path: Path
-    size: int  #: of the file [bytes]
-    channels: dict[str, int]  #: name -> samples
-    findings: dict[str, int]  #: severity -> how many
+    run: Annotated[str, Doc("its id")]
+    path: Annotated[Path, Doc("of the run store")]
+    size: Annotated[int, Doc("of the file [bytes]")]
+    channels: Annotated[dict[str, int], Doc("name -> samples")]
+    findings: Annotated[dict[str, int], Doc("severity -> how many")]
 
 
 def default_store(folder: Path) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,14 +15,15 @@ from tethertest.pipeline.store_summary import describe_store
 from tethertest.pipeline.time_bases import time_bases
 from tethertest.readers import load_run, read_log
 from tethertest.readers.config.given import given_settings, settings_toml
-from tethertest.readers.inspect import describe
+from tethertest.readers.inspect import described_channels
 from tethertest.readers.registry import identified
 from tethertest.records.channel import RawLog
+from tethertest.records.inspected import ChannelSeen, FewStamps, Inspected, LogSeen, Refusal, RunSeen
 from tethertest.records.run import Log
 from tethertest.store import is_store
 
 
-def inspect_path(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -> dict[str, Any]:
+def inspect_path(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -> Inspected:
     """Describe a log, a run store, or every log of a run folder.
 
     Parameters
@@ -35,8 +37,8 @@ def inspect_path(path: Path, rigs: Path | None = None, words: Sequence[str] = ()
 
     Returns
     -------
-    dict
-        The object of ``inspect --json``. A run folder's logs that cannot be read are told as `refusal` does.
+    LogSeen, RunSeen or StoreSeen
+        A run folder's logs that cannot be read are told as `refusal` does.
 
     Raises
     ------
@@ -47,19 +49,18 @@ def inspect_path(path: Path, rigs: Path | None = None, words: Sequence[str] = ()
     if words and (path.is_dir() or is_store(path)):
         raise settings_of_a_run(path)
     if is_store(path):
-        return {**describe_store(path), "refused": False}
+        return describe_store(path)
     if not path.is_dir():
         return described(read_bare(path, words), settings_toml(words))
     if not (path / "run.toml").is_file():
         message = "the folder has no run.toml"
         raise TethertestError(message, "name a run folder, or single logs", path=path)
     run = load_run(path, rigs)
-    logs = [_log_of_run(run.folder / log.file, log) for log in run.file.log]
-    refused = any(log["refused"] for log in logs)
-    return {"run": run.file.id, "rig": run.rig.name, "refused": refused, "logs": logs}
+    logs = tuple(_log_of_run(run.folder / log.file, log) for log in run.file.log)
+    return RunSeen(run.file.id, run.rig.name, any(log.refused for log in logs), logs)
 
 
-def inspected(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -> dict[str, Any]:
+def inspected(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -> Inspected:
     """Return what `inspect_path` says, or the refusal of a file that cannot be read.
 
     Raises
@@ -76,7 +77,7 @@ def inspected(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -
         return refusal(path, error, settings)
 
 
-def refusal(path: Path, error: TethertestError, settings: Log | None = None) -> dict[str, Any]:
+def refusal(path: Path, error: TethertestError, settings: Log | None = None) -> Refusal:
     """Return why a file is refused, with the keys of a log that was read where they are known.
 
     Parameters
@@ -96,18 +97,18 @@ def refusal(path: Path, error: TethertestError, settings: Log | None = None) -> 
         except TethertestError:
             pass  # no reader claims the file: that is what the error says
     elsewhere = error.path is not None and error.path != str(path)
-    return {
-        "path": str(path),
-        "refused": True,
-        "format": name,
-        "reason": reason,
-        "line": error.line,
-        "message": f"{error.path}: {error.problem}" if elsewhere else error.problem,
-        "remedy": error.remedy,
-    }
+    return Refusal(
+        path=str(path),
+        refused=True,
+        format=name,
+        reason=reason,
+        line=error.line,
+        message=f"{error.path}: {error.problem}" if elsewhere else error.problem,
+        remedy=error.remedy,
+    )
 
 
-def described(log: RawLog, settings: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def described(log: RawLog, settings: Mapping[str, Any] | None = None) -> LogSeen:
     """Describe a log as read: what it holds, what its stamps are like, and what its values show.
 
     Parameters
@@ -117,25 +118,38 @@ def described(log: RawLog, settings: Mapping[str, Any] | None = None) -> dict[st
     settings : mapping, optional
         What was given to read a bare log, as TOML has it; absent for a log that run.toml has.
     """
-    found = describe(log)
+    channels, of_units = described_channels(log)
     bases = time_bases(log)
-    shown, remarks = shown_flags(log)
-    of_channel = {name: base for base in bases for name in base["channels"]}
-    for channel in found["channels"]:
-        name, base = channel["name"], of_channel[channel["name"]]
-        channel["flags"] = {**channel["flags"], **base["flags"], **shown.get(name, {})}
-        if base["quantum"] is not None:
-            channel["rate"] = 1.0 / base["step"]
-    return {
-        **found,
-        "refused": False,
-        "time_bases": bases,
-        "remarks": [*found["remarks"], *remarks],
-        "entry": None if settings is None else entry_text(log, settings),
-    }
+    shown, of_values = shown_flags(log)
+    base_of = {name: base for base in bases for name in base.channels}
+    return LogSeen(
+        path=str(log.path),
+        refused=False,
+        format=log.format,
+        reason=log.reason,
+        encoding=log.encoding,
+        start=None if log.start is None else log.start.isoformat(),
+        decimal=log.decimal,
+        separator=log.separator,
+        date_order=log.date_order,
+        header_line=log.header_line,
+        rate=log.rate,
+        sha256=log.sha256,
+        channels=tuple(_seen(channel, base_of[channel.name], shown) for channel in channels),
+        time_bases=bases,
+        remarks=(*log.remarks, *of_units, *of_values),
+        entry=None if settings is None else entry_text(log, settings),
+    )
 
 
-def _log_of_run(path: Path, log: Log) -> dict[str, Any]:
+def _seen(channel: ChannelSeen, base: FewStamps, shown: Mapping[str, dict[str, int]]) -> ChannelSeen:
+    """Return a channel with what its stamps and its values show."""
+    flags = {**channel.flags, **base.flags, **shown.get(channel.name, {})}
+    rate = channel.rate if base.quantum is None or base.step is None else 1.0 / base.step
+    return replace(channel, flags=flags, rate=rate)
+
+
+def _log_of_run(path: Path, log: Log) -> LogSeen | Refusal:
     try:
         return described(read_log(path, log))
     except TethertestError as error:

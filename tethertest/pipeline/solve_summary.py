@@ -1,12 +1,13 @@
-"""What ``solve --json`` prints, and its JSON schema."""
+"""What ``solve --json`` prints."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
+from tethertest.records.described import Doc
 from tethertest.records.response import Response
 from tethertest.solver.nonlinear.snap_peak import SNAP_WINDOW, running_peaks
 
@@ -15,44 +16,53 @@ from tethertest.solver.nonlinear.snap_peak import SNAP_WINDOW, running_peaks
 class ErrorSummary:
     """Relative errors of the gauges' tension, null where not known."""
 
-    numerical: float | None
-    model: float | None
-    spread: float | None
-    peak: float | None  #: of the largest 20 ms mean, where the cable goes slack
-    #: lowest and highest peak over the nominal one, of the members that tell the spread
-    peak_range: tuple[float, float] | None
+    numerical: Annotated[float | None, Doc("from successive meshes")]
+    model: Annotated[float | None, Doc("against the next fidelity")]
+    spread: Annotated[float | None, Doc("from unknown damping and straightness, where the cable goes slack")]
+    peak: Annotated[float | None, Doc("of the largest 20 ms mean, where the cable goes slack")]
+    peak_range: Annotated[
+        tuple[float, float] | None,
+        Doc("lowest and highest peak over the nominal one, of the members that tell the spread"),
+    ]
 
 
 @dataclass(frozen=True, slots=True)
 class GaugeSummary:
     """Tension at one gauge over the record [N], null where the solution left the range of numbers."""
 
-    at: float
-    minimum: float | None
-    mean: float | None
-    maximum: float | None
-    #: of the running mean over 20 ms; null below 100 rows a second where the cable stays taut
-    smoothed_maximum: float | None
+    at: Annotated[float, Doc("fraction of the length from the bottom")]
+    minimum: Annotated[float | None, Doc("smallest tension")]
+    mean: Annotated[float | None, Doc("of all rows")]
+    maximum: Annotated[float | None, Doc("largest tension")]
+    smoothed_maximum: Annotated[
+        float | None,
+        Doc("of the running mean over 20 ms; null below 100 rows a second where the cable stays taut"),
+    ]
 
 
 @dataclass(frozen=True, slots=True)
 class SolveSummary:
-    """Answer of ``tethertest solve``, in SI; `slack` has the spans of zero tension [s] by gauge."""
+    """Answer of ``tethertest solve``, in SI."""
 
-    scene: str
-    status: str
-    advice: str
-    fidelity: str
-    scheme: str
-    cells: int
-    time_step: float
-    native_times: bool
-    wall_s: float
+    scene: Annotated[str, Doc("name in the scene file")]
+    status: Annotated[str, Doc("ok, or what is wrong with the answer")]
+    advice: Annotated[str, Doc("the status in words")]
+    fidelity: Annotated[str, Doc("catenary, linear or nonlinear")]
+    scheme: Annotated[str, Doc("of the model")]
+    cells: Annotated[int, Doc("of the mesh; 0 without one")]
+    time_step: Annotated[float, Doc("[s]", null="no steps")]
+    native_times: Annotated[bool, Doc("the series are at the scheme's own time levels, not t = k/rate")]
+    wall_s: Annotated[float, Doc("time that the solve took [s]")]
     error: ErrorSummary
-    gauges: tuple[GaugeSummary, ...]
-    slack: dict[str, tuple[tuple[float, float], ...]]
-    warnings: tuple[str, ...]
-    numbers: dict[str, float | None]
+    gauges: Annotated[tuple[GaugeSummary, ...], Doc("in the order of the scene")]
+    slack: Annotated[
+        dict[str, tuple[tuple[float, float], ...]], Doc("gauge -> spans of zero tension, start and stop [s]")
+    ]
+    warnings: Annotated[tuple[str, ...], Doc("what the solver does not vouch for")]
+    numbers: Annotated[
+        dict[str, float | None],
+        Doc("what chose the model and bounds it: frequency ratios, strain and others"),
+    ]
 
 
 def solve_summary(response: Response) -> SolveSummary:
@@ -89,15 +99,6 @@ def solve_summary(response: Response) -> SolveSummary:
         warnings=response.warnings,
         numbers={name: _finite(value) for name, value in response.numbers.items()},
     )
-
-
-def solve_schema() -> dict[str, Any]:
-    """Return the JSON Schema 2020-12 of `SolveSummary`."""
-    from pydantic import TypeAdapter
-
-    schema = TypeAdapter(SolveSummary).json_schema()
-    dialect = "https://json-schema.org/draft/2020-12/schema"
-    return {"$schema": dialect, **schema, "title": "tethertest solve --json"}
 
 
 def _smoothed_maximum(response: Response, gauge: int) -> float | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from tethertest.conditioning.stamps import JITTER_FRACTION, look_the_same
 from tethertest.pipeline.bare_log import JITTER
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import RawLog
+from tethertest.records.inspected import FewStamps, TimeBase
 
 #: steps off the usual one in more than this share of the rows are the logger's habit, not single gaps
 HABIT: Final = 0.05
@@ -21,7 +22,7 @@ MULTIPLE: Final = 0.01
 PLACES: Final = 3
 
 
-def time_bases(log: RawLog) -> list[dict[str, Any]]:
+def time_bases(log: RawLog) -> tuple[TimeBase | FewStamps, ...]:
     """Describe the time of a log's channels, once for those that share it.
 
     Parameters
@@ -31,46 +32,47 @@ def time_bases(log: RawLog) -> list[dict[str, Any]]:
 
     Returns
     -------
-    list of dict
-        Times in seconds after the log's start, counts of flags, and a sentence under ``text``.
+    tuple of TimeBase or FewStamps
+        Times in seconds after the log's start, counts of flags, and a sentence.
     """
     groups = with_same_times(log.channels, lambda channel: channel.time)
     with np.errstate(over="ignore"):  # stamps that are no seconds at all
-        return [_base([channel.name for channel in group], group[0].time) for group in groups]
+        return tuple(_base(tuple(channel.name for channel in group), group[0].time) for group in groups)
 
 
-def _base(names: list[str], stamps: FloatArray) -> dict[str, Any]:
+def _base(names: tuple[str, ...], stamps: FloatArray) -> TimeBase | FewStamps:
     time = stamps[np.isfinite(stamps)]
     missing = int(stamps.size - time.size)
-    found: dict[str, Any] = {"channels": names, "n": int(stamps.size), "first": None, "last": None}
-    if time.size:
-        found |= {"first": float(time.min()), "last": float(time.max())}
-    if time.size < 2:
+    first, last = (float(time.min()), float(time.max())) if time.size else (None, None)
+    if first is None or last is None or time.size < 2:
         flags = {"missing_time": missing, "duplicate_time": 0, "backward_time": 0, "gap": 0}
-        return {**found, "step": None, "quantum": None, "uneven": 0, "flags": flags, "text": _few(time.size)}
+        return FewStamps(names, stamps.size, first, last, None, None, 0, flags, _few(time.size))
     seen = steps_of(time)
     # a row in the wrong place is no hole in the record
     ordered = np.unique(time) if seen.backward.any() else time
     holes = steps_of(ordered).gap
     step = np.diff(ordered)
     repeats = seen.duplicate & ~seen.backward
-    return {
-        **found,
-        "step": seen.step or None,
-        "quantum": None if seen.quantised is None else seen.quantised.quantum,
-        "shortest_step": float(step.min()),
-        "longest_step": float(step.max()),
-        "mean_rate": (time.size - 1) / float(time.max() - time.min()) if time.max() > time.min() else None,
-        "jitter": seen.jitter if np.isfinite(seen.jitter) else None,
-        "uneven": int(np.count_nonzero(_uneven(step, seen.median))),
-        "flags": {
+    return TimeBase(
+        channels=names,
+        n=stamps.size,
+        first=first,
+        last=last,
+        step=seen.step or None,
+        quantum=None if seen.quantised is None else seen.quantised.quantum,
+        uneven=int(np.count_nonzero(_uneven(step, seen.median))),
+        flags={
             "missing_time": missing,
             "duplicate_time": int(np.count_nonzero(repeats)),
             "backward_time": int(np.count_nonzero(seen.backward)),
             "gap": int(np.count_nonzero(holes)),
         },
-        "text": _sentence(time, ordered, seen, holes, repeats, missing),
-    }
+        text=_sentence(time, ordered, seen, holes, repeats, missing),
+        shortest_step=float(step.min()),
+        longest_step=float(step.max()),
+        mean_rate=(time.size - 1) / (last - first) if last > first else None,
+        jitter=seen.jitter,
+    )
 
 
 def _few(count: int) -> str:

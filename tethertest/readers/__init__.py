@@ -1,13 +1,11 @@
 """Logs, rig, run and scene files into records."""
 
 from tethertest.readers.config.load import load_prototype, load_prototype_of, load_rig, load_run, load_scene
-from tethertest.readers.config.schema import json_schema
 from tethertest.readers.registry import READERS, identify, read_log
 
 __all__ = [
     "READERS",
     "identify",
-    "json_schema",
     "load_prototype",
     "load_prototype_of",
     "load_rig",

@@ -1,19 +1,19 @@
-"""What a log is, as one object for people and programs."""
+"""What the channels of a log are, for people and programs."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from tethertest.errors import QuantityError
 from tethertest.records.channel import Flag, RawChannel, RawLog
+from tethertest.records.inspected import ChannelSeen
 from tethertest.units import UnitScale, channel_scale
 
 
-def describe(log: RawLog) -> dict[str, Any]:
-    """Describe a log as read, before any conditioning.
+def described_channels(log: RawLog) -> tuple[list[ChannelSeen], list[str]]:
+    """Describe the channels of a log as read, before any conditioning.
 
     Parameters
     ----------
@@ -22,29 +22,16 @@ def describe(log: RawLog) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        The object of ``inspect --json``: SI values, None where there are none.
+    channels : list of ChannelSeen
+        SI values, None where there are none.
+    remarks : list of str
+        On units that are not known.
     """
-    remarks = list(log.remarks)
-    channels = [_channel(channel, remarks) for channel in log.channels]
-    return {
-        "path": str(log.path),
-        "format": log.format,
-        "encoding": log.encoding,
-        "start": None if log.start is None else log.start.isoformat(),
-        "decimal": log.decimal,
-        "separator": log.separator,
-        "date_order": log.date_order,
-        "header_line": log.header_line,
-        "rate": log.rate,
-        "sha256": log.sha256,
-        "channels": channels,
-        "remarks": remarks,
-        "reason": log.reason,
-    }
+    remarks: list[str] = []
+    return [_channel(channel, remarks) for channel in log.channels], remarks
 
 
-def _channel(channel: RawChannel, remarks: list[str]) -> dict[str, Any]:
+def _channel(channel: RawChannel, remarks: list[str]) -> ChannelSeen:
     scale = _scale(channel, remarks)
     with np.errstate(over="ignore", invalid="ignore"):  # what is then infinite is told as unknown
         values = channel.values[np.isfinite(channel.values)] * scale.factor + scale.offset
@@ -53,19 +40,19 @@ def _channel(channel: RawChannel, remarks: list[str]) -> dict[str, Any]:
     steps = np.diff(time)
     forward = steps[steps > 0]
     rate = 1.0 / float(np.median(forward)) if forward.size else math.nan
-    return {
-        "name": channel.name,
-        "kind": scale.kind,
-        "unit_as_written": channel.unit,
-        "unit": scale.unit,
-        "n": int(channel.values.size),
-        "rate": _known(rate),
-        "duration": float(time.max() - time.min()) if time.size else 0.0,
-        "minimum": _known(float(values.min())) if values.size else None,
-        "mean": _known(mean),
-        "maximum": _known(float(values.max())) if values.size else None,
-        "flags": {"missing": int(channel.values.size - values.size), **_told(channel)},
-    }
+    return ChannelSeen(
+        name=channel.name,
+        kind=scale.kind,
+        unit_as_written=channel.unit,
+        unit=scale.unit,
+        n=channel.values.size,
+        rate=_known(rate),
+        duration=float(time.max() - time.min()) if time.size else 0.0,
+        minimum=_known(float(values.min())) if values.size else None,
+        mean=_known(mean),
+        maximum=_known(float(values.max())) if values.size else None,
+        flags={"missing": channel.values.size - values.size, **_told(channel)},
+    )
 
 
 def _known(number: float) -> float | None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import Enum
+from typing import Annotated
 
 from tethertest.records.arrays import FloatArray
+from tethertest.records.described import Doc
 from tethertest.records.lines import ChannelLines, Line, LineVerdict
 
 #: verdicts of what is no line of the response
@@ -39,11 +41,11 @@ class Direction(Enum):
 class Step:
     """A step between two neighbouring settings that the trend on both sides does not carry."""
 
-    interval: tuple[float, float]  #: the two settings, the lower one first
-    amplitudes: tuple[float, float]  #: at the two settings, in the order of the interval
-    verdict: StepVerdict
-    excess: float  #: the step over the largest of its neighbours
-    reason: str
+    interval: Annotated[tuple[float, float], Doc("the two settings, the lower one first")]
+    amplitudes: Annotated[tuple[float, float], Doc("at the two settings, in the order of the interval")]
+    verdict: Annotated[StepVerdict, Doc("whether it is a jump")]
+    excess: Annotated[float, Doc("the step over the largest of its neighbours", null="it has no neighbours")]
+    reason: Annotated[str, Doc("the verdict in words")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,14 +87,14 @@ class Hysteresis:
 class CurvePoint:
     """One run on a curve."""
 
-    run: str
-    setting: float  #: drive frequency [Hz] or amplitude [m]
-    amplitude: float  #: of the line, in the channel's unit
-    standard_error: float
-    interval: tuple[float, float]  #: 95 %
-    verdict: str  #: of the line
-    found: bool  #: whether it is there
-    damage: str = ""  #: why the point is shown and not judged
+    run: Annotated[str, Doc("its id")]
+    setting: Annotated[float, Doc("drive frequency [Hz] or amplitude [m]")]
+    amplitude: Annotated[float, Doc("of the line, peak of a cosine, in the channel's unit")]
+    standard_error: Annotated[float, Doc("of the amplitude")]
+    interval: Annotated[tuple[float, float], Doc("95 % of the amplitude")]
+    verdict: Annotated[str, Doc("of the line")]
+    found: Annotated[bool, Doc("whether the line is there")]
+    damage: Annotated[str, Doc("why the point is shown and not judged", null="it is judged")] = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 from tethertest.errors import DataError
 from tethertest.records.channel import Channel, Window
+from tethertest.records.described import Doc
 from tethertest.records.events import CycleCount, Extremes, Front, Snap, WaveSpeed
 from tethertest.records.frames import axes_or_new, table
 from tethertest.records.lines import ChannelLines, DriveFit, Event
@@ -30,10 +31,10 @@ LINE_COLUMNS: Final = (
 class Peak:
     """A line that a blind search found; it has no verdict."""
 
-    frequency: float  #: [Hz]
-    amplitude: float  #: peak of a cosine, in the channel's unit
-    p_value: float  #: of this frequency alone
-    significant: bool  #: over all frequencies of the record
+    frequency: Annotated[float, Doc("[Hz]")]
+    amplitude: Annotated[float, Doc("peak of a cosine, in the channel's unit")]
+    p_value: Annotated[float, Doc("of this frequency alone")]
+    significant: Annotated[bool, Doc("over all frequencies of the record")]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,9 +48,13 @@ class ChannelAnalysis:
     peaks: tuple[Peak, ...] = ()  #: of a blind search, where there is no drive to go by
     events: tuple[Event, ...] = ()
     no_events: str = ""  #: why slack was not looked for
-    snaps: tuple[Snap, ...] = ()
     extremes: Extremes | None = None  #: in the window
     cycles: CycleCount | None = None  #: in the window; of tensions
+
+    @property
+    def snaps(self) -> tuple[Snap, ...]:
+        """The snaps that were measured."""
+        return tuple(event.snap for event in self.events if event.snap is not None)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,19 +5,30 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from tethertest.records.described import Doc
 from tethertest.records.quantity import SI
+
+_REFERENCE = (
+    "standard uncertainty of all reference forces together, relative (one set of weights, one reference cell)"
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
     """How a load cell's output becomes force: pairs of output and force, in a log or written here."""
 
-    log: str | None = None  #: file of ``measured,real`` pairs beside the rig file
-    units: tuple[str, str] | None = None  #: of the log's two columns, where its header names none
-    points: tuple[tuple[str, str], ...] = ()  #: pairs of output and force, text with units
-    order: int | None = None  #: of the polynomial fitted to the pairs; straight lines between them without it
-    #: relative standard uncertainty of all reference forces together (one set of weights, one reference cell)
-    reference: Annotated[float, SI("1", minimum=0.0, maximum=0.1)] | None = None
+    log: Annotated[str, Doc("file of ``measured,real`` pairs beside the rig file")] | None = None
+    units: (
+        Annotated[tuple[str, str], Doc("units of the log's two columns, where its header names none")] | None
+    ) = None
+    points: Annotated[tuple[tuple[str, str], ...], Doc("pairs of output and force, text with units")] = ()
+    order: (
+        Annotated[
+            int, Doc("order of the polynomial fitted to the pairs; straight lines between them without it")
+        ]
+        | None
+    ) = None
+    reference: Annotated[float, SI("1", _REFERENCE, minimum=0.0, maximum=0.1)] | None = None
 
 
 @dataclass(frozen=True, slots=True)

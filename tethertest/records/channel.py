@@ -7,12 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntFlag
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Annotated, Protocol
 
 import numpy as np
 
 from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray, FlagArray, FloatArray, frozen
+from tethertest.records.described import Doc
 from tethertest.records.frames import drawn, series, table
 from tethertest.signal.series import sampling_interval
 
@@ -242,14 +243,14 @@ class ClockFit:
     Both count seconds from the date of run.toml, each by its own stamps.
     """
 
-    clock: str
-    reference: str
-    offset: float  #: [s] at reference time zero
-    offset_error: float  #: standard error [s]
-    drift: float  #: [1]
-    drift_error: float  #: standard error [1]
-    method: str  #: what the alignment rests on
-    remarks: tuple[str, ...] = ()
+    clock: Annotated[str, Doc("instrument of the rig")]
+    reference: Annotated[str, Doc("the clock that it is held against")]
+    offset: Annotated[float, Doc("what the clock shows at reference time zero [s]")]
+    offset_error: Annotated[float, Doc("standard error [s]", null="not known")]
+    drift: Annotated[float, Doc("by which the clock runs faster than the reference, relative")]
+    drift_error: Annotated[float, Doc("standard error of the drift", null="not known")]
+    method: Annotated[str, Doc("what the alignment rests on")]
+    remarks: Annotated[tuple[str, ...], Doc("what a person should know of it")] = ()
 
     def to_reference(self, time: FloatArray) -> FloatArray:
         """Return reference times of stamps of this clock."""
@@ -274,12 +275,16 @@ class Window:
 class Finding:
     """Something an audit saw that a person must know."""
 
-    subject: str  #: channel or clock
-    kind: str  #: flag name or clock fault, e.g. "saturated", "day_month_swapped"
-    text: str
-    severity: str = "warning"  #: "note", "warning" or "fatal" (nothing can be decided)
-    spans: tuple[tuple[float, float], ...] = ()  #: [s] on the run's clock
-    samples: int = 0
+    subject: Annotated[str, Doc("channel, clock or file")]
+    kind: Annotated[str, Doc("name of a flag or of a fault, such as saturated or day_month_swapped")]
+    text: Annotated[str, Doc("what was seen, in words")]
+    severity: Annotated[str, Doc("note; warning: told beside the verdict; fatal: nothing can be decided")] = (
+        "warning"
+    )
+    spans: Annotated[
+        tuple[tuple[float, float], ...], Doc("where it was seen, start and stop on the run's clock [s]")
+    ] = ()
+    samples: Annotated[int, Doc("how many samples it concerns")] = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -42,8 +42,9 @@ def _alternatives(kind: Any) -> dict[str, tuple[Any, ...]]:
 
 
 def _parts(hint: Any) -> Iterator[Any]:
-    if get_origin(hint) in {Union, UnionType}:
-        for part in get_args(hint):
+    inner = get_args(hint)[0] if get_origin(hint) is Annotated else hint
+    if get_origin(inner) in {Union, UnionType}:
+        for part in get_args(inner):
             yield from _parts(part)
     else:
         yield hint

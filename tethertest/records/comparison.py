@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Annotated
+
+from tethertest.records.described import Doc
 
 
 class Verdict(Enum):
@@ -19,16 +22,22 @@ class Verdict(Enum):
 class Metric:
     """One number that compares measured and replayed."""
 
-    name: str  #: e.g. "peak_tension", "order_amplitude 1", "sprague_geers"
-    channel: str
-    unit: str
-    measured: float | None
-    replayed: float | None
-    error: float  #: relative, or in rad for a phase; what the limit applies to
-    uncertainty: float  #: standard uncertainty of `error` (numerical, input and data together)
-    limit: float | None
-    verdict: Verdict
-    reason: str
+    name: Annotated[str, Doc("what is compared, such as peak_tension, order_amplitude 1, sprague_geers")]
+    channel: Annotated[str, Doc("sensor of the rig")]
+    unit: Annotated[str, Doc("of measured and replayed, SI")]
+    measured: Annotated[float | None, Doc("null where the metric has no such number")]
+    replayed: Annotated[float | None, Doc("null where the metric has no such number")]
+    error: Annotated[
+        float, Doc("relative, or in rad for a phase; what the limit applies to", null="not known")
+    ]
+    uncertainty: Annotated[
+        float, Doc("standard uncertainty of the error: numerical, input and data together", null="not known")
+    ]
+    limit: Annotated[
+        float | None, Doc("largest size of the error that passes; null: the metric only informs")
+    ]
+    verdict: Annotated[Verdict, Doc("error and uncertainty against the limit")]
+    reason: Annotated[str, Doc("the verdict in words, with the numbers")]
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from tethertest.records.described import Doc
 
 #: 95 % interval
 Interval = tuple[float, float]
@@ -30,10 +33,12 @@ class Snap:
 class Front:
     """The onset of a wave at one sensor."""
 
-    channel: str
-    at: float  #: fraction of the cable's length from the bottom
-    time: float  #: [s]
-    interval: Interval  #: [s]; holds the onset of a jump, a ramp or a parabola
+    channel: Annotated[str, Doc("sensor of the rig")]
+    at: Annotated[float, Doc("fraction of the cable's length from the bottom")]
+    time: Annotated[float, Doc("of the onset [s]")]
+    interval: Annotated[
+        Interval, Doc("95 % of the time [s]; holds the onset of a jump, a ramp or a parabola")
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,19 +58,19 @@ class WaveSpeed:
 class Extremes:
     """Largest and smallest usable value of a channel in its window."""
 
-    maximum: float
-    maximum_time: float  #: [s]
-    minimum: float
-    minimum_time: float  #: [s]
+    maximum: Annotated[float, Doc("largest usable value, in the channel's unit")]
+    maximum_time: Annotated[float, Doc("[s]")]
+    minimum: Annotated[float, Doc("smallest usable value, in the channel's unit")]
+    minimum_time: Annotated[float, Doc("[s]")]
 
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
     """One load cycle of a rainflow count."""
 
-    range: float
-    mean: float
-    count: float  #: 1, or 0.5 of a half cycle
+    range: Annotated[float, Doc("largest less smallest value, in the channel's unit")]
+    mean: Annotated[float, Doc("middle of the range")]
+    count: Annotated[float, Doc("1, or 0.5 of a half cycle")]
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Annotated
 
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Window
+from tethertest.records.described import Doc
+from tethertest.records.events import Snap
 from tethertest.records.response import NaturalFrequency
 
 
@@ -60,9 +63,9 @@ class Line:
 class DriveFit:
     """The drive frequency as fitted."""
 
-    frequency: float  #: [Hz]
-    standard_error: float  #: [Hz]
-    channels: tuple[str, ...]  #: those it was fitted to
+    frequency: Annotated[float, Doc("fitted [Hz]")]
+    standard_error: Annotated[float, Doc("of the frequency [Hz]")]
+    channels: Annotated[tuple[str, ...], Doc("those it was fitted to")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +94,7 @@ class Event:
     start: float  #: [s]
     stop: float  #: [s]
     value: float  #: lowest tension of a slack interval, peak of a snap [N]
+    snap: Snap | None = None  #: the numbers of a snap, where it was measured
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tethertest.errors import QuantityError
+from tethertest.records.described import described
 from tethertest.units import parse_quantity
 
 if TYPE_CHECKING:
@@ -14,9 +15,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SI:
-    """Annotation ``Annotated[float, SI("kg/m", above=0.0)]``: text with a unit becomes a number in SI."""
+    """Annotation ``Annotated[float, SI("N", "of the lift")]``: text with a unit becomes a number in SI."""
 
     unit: str  #: SI unit; ``"1"`` for a pure number
+    text: str = ""  #: what the key means
     above: float | None = None  #: the value must be greater
     minimum: float | None = None  #: the value must be at least this
     maximum: float | None = None  #: the value must be at most this
@@ -63,8 +65,10 @@ class SI:
         return core_schema.no_info_plain_validator_function(validate)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        """Describe the field in the JSON schema that editors use."""
-        described = f"quantity in {self.unit}" if self.unit != "1" else "pure number"
+        """Describe the text that files have, and the number that commands print."""
+        if handler.mode == "serialization":
+            unit = "" if self.unit == "1" else f" [{self.unit}]"
+            return described({"type": "number"}, f"{self.text}{unit}")
         limits = [
             f"{words} {bound:g}"
             for words, bound in (
@@ -74,8 +78,9 @@ class SI:
             )
             if bound is not None
         ]
+        quantity = f"quantity in {self.unit}" if self.unit != "1" else "pure number"
+        description = "; ".join(text for text in (self.text, ", ".join([quantity, *limits])) if text)
         text = {"type": "string", "pattern": r"^\s*[-+]?(\d|\.\d)"}
-        description = ", ".join([described, *limits])
         if self.unit == "1":
             return {"anyOf": [{"type": "number"}, text], "description": description}
         return {**text, "description": description, "examples": [f"1.5 {self.unit}"]}

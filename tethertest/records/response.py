@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from dataclasses import field as a_field
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from tethertest.records.arrays import FloatArray
+from tethertest.records.described import Doc
 from tethertest.records.frames import drawn
 from tethertest.records.scene import Scene
 
@@ -121,8 +122,8 @@ class Response:
 class NaturalFrequency:
     """One natural frequency of the rig with what moves in it."""
 
-    name: str  #: e.g. "axial 1", "lateral 1", "pendulum"
-    frequency: float  #: [Hz]
+    name: Annotated[str, Doc("such as axial 1, lateral 1, pendulum")]
+    frequency: Annotated[float, Doc("[Hz]")]
 
 
 @dataclass(frozen=True, slots=True)

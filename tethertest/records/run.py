@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
+from tethertest.records.described import Doc
 from tethertest.records.quantity import SI
 from tethertest.records.rig import Rig
 
@@ -18,38 +19,47 @@ Span = tuple[Instant, Instant]
 class Drive:
     """The drive as it was set."""
 
-    kind: Literal["crank-slider", "harmonic", "measured", "none"]
-    frequency: Annotated[float, SI("Hz", above=0.0)] | None = None  #: nominal; the fit starts here
-    radius: Annotated[float, SI("m", above=0.0)] | None = None
-    amplitude: Annotated[float, SI("m", above=0.0)] | None = None
+    kind: Annotated[Literal["crank-slider", "harmonic", "measured", "none"], Doc("what moved the bottom end")]
+    frequency: Annotated[float, SI("Hz", "nominal; the fit starts here", above=0.0)] | None = None
+    radius: Annotated[float, SI("m", "of the crank", above=0.0)] | None = None
+    amplitude: Annotated[float, SI("m", "of a harmonic motion, peak", above=0.0)] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class RunPlatform:
     """Which of the rig's platform modes the run used."""
 
-    mode: str
+    mode: Annotated[str, Doc("one of the rig's platform.modes")]
 
 
 @dataclass(frozen=True, slots=True)
 class Log:
     """One table of a file of the run folder; the settings are only for what the file itself leaves open."""
 
-    file: str
-    clock: str  #: name of the rig's instrument
-    channels: dict[str, str] = field(default_factory=dict)  #: name in the file -> sensor of the rig
-    format: str | None = None
-    encoding: str | None = None
-    decimal: Literal[".", ","] | None = None
-    separator: str | None = None
-    date_order: Literal["ymd", "dmy", "mdy"] | None = None
-    time_zone: str | None = None
-    skip_rows: int = 0
-    units: dict[str, str] = field(default_factory=dict)  #: name in the file -> unit, where the file has none
-    table: str | None = None  #: what to read in a container: member, sheet, path of keys, group or variable
-    columns: tuple[str, ...] = ()  #: names of the columns in order, where the file has none
-    time: str | None = None  #: name of the column or data set that is the time
-    rate: Annotated[float, SI("Hz", above=0.0)] | None = None  #: rate of the samples, where there is no time
+    file: Annotated[str, Doc("name of a file in the run folder")]
+    clock: Annotated[str, Doc("name of the rig's instrument whose clock stamped it")]
+    channels: Annotated[dict[str, str], Doc("name in the file -> sensor of the rig, where they differ")] = (
+        field(default_factory=dict)
+    )
+    format: Annotated[str, Doc("name of the reader")] | None = None
+    encoding: Annotated[str, Doc("of the text, such as utf-8")] | None = None
+    decimal: Annotated[Literal[".", ","], Doc("sign before the decimals")] | None = None
+    separator: Annotated[str, Doc("between columns")] | None = None
+    date_order: Annotated[Literal["ymd", "dmy", "mdy"], Doc("of year, month and day in dates")] | None = None
+    time_zone: (
+        Annotated[str, Doc("of the stamps, such as Asia/Shanghai or +08:00; the run's without it")] | None
+    ) = None
+    skip_rows: Annotated[int, Doc("rows before the header")] = 0
+    units: Annotated[dict[str, str], Doc("name in the file -> unit, where the file has none")] = field(
+        default_factory=dict
+    )
+    table: (
+        Annotated[str, Doc("what to read in a container: member, sheet, path of keys, group or variable")]
+        | None
+    ) = None
+    columns: Annotated[tuple[str, ...], Doc("names of the columns in order, where the file has none")] = ()
+    time: Annotated[str, Doc("name of the column or data set that is the time")] | None = None
+    rate: Annotated[float, SI("Hz", "of the samples, where there is no time", above=0.0)] | None = None
 
     @property
     def key(self) -> str:
@@ -61,52 +71,60 @@ class Log:
 class Windows:
     """Windows chosen by hand [s on the run's clock]; what is absent is found."""
 
-    rest_before: Span | None = None
-    rest_after: Span | None = None
-    steady: Span | None = None
-    reason: str | None = None
+    rest_before: Annotated[Span, Doc("at rest before the drive starts, start and stop")] | None = None
+    rest_after: Annotated[Span, Doc("at rest after the drive has stopped, start and stop")] | None = None
+    steady: Annotated[Span, Doc("driven, after what the start left has died away, start and stop")] | None = (
+        None
+    )
+    reason: Annotated[str, Doc("which the report prints")] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Exclude:
     """A span of one channel that an analysis must leave out."""
 
-    channel: str
-    span: Span
-    reason: str
+    channel: Annotated[str, Doc("sensor of the rig")]
+    span: Annotated[Span, Doc("start and stop on the run's clock")]
+    reason: Annotated[str, Doc("which the report prints")]
 
 
 @dataclass(frozen=True, slots=True)
 class ClockOffset:
     """A clock offset set by hand."""
 
-    value: Instant
-    reason: str
-    error: Annotated[float, SI("s", above=0.0)] | None = None  #: its standard error; unknown if absent
+    value: Annotated[float, SI("s", "what the clock shows at the reference's time zero")]
+    reason: Annotated[str, Doc("which the report prints")]
+    error: Annotated[float, SI("s", "standard error of the value; unknown if absent", above=0.0)] | None = (
+        None
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class Override:
     """What a person decided against the program's own finding."""
 
-    clock_offset: dict[str, ClockOffset] = field(default_factory=dict)
+    clock_offset: Annotated[dict[str, ClockOffset], Doc("clock -> its offset")] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class RunFile:
     """The keys of run.toml."""
 
-    id: str
-    rig: str
-    date: dt.datetime
+    id: Annotated[str, Doc("by which reports and stores know the run")]
+    rig: Annotated[str, Doc("name of a rig file, found upwards from the run folder in rigs/")]
+    date: Annotated[
+        dt.datetime, Doc("start by the laboratory's clock, with its zone; reports take dates from here")
+    ]
     drive: Drive
-    log: tuple[Log, ...]
+    log: Annotated[tuple[Log, ...], Doc("[[log]] tables")]
     platform: RunPlatform = RunPlatform("free")
-    title: str = ""
-    operator: str = ""
-    purpose: Literal["validation", "calibration"] = "validation"
+    title: Annotated[str, Doc("printed, never required")] = ""
+    operator: Annotated[str, Doc("printed, never required")] = ""
+    purpose: Annotated[
+        Literal["validation", "calibration"], Doc("a calibration run is never judged as a validation")
+    ] = "validation"
     windows: Windows = Windows()
-    exclude: tuple[Exclude, ...] = ()
+    exclude: Annotated[tuple[Exclude, ...], Doc("[[exclude]] tables")] = ()
     override: Override = Override()
 
 

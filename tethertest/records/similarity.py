@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
+from tethertest.records.described import Doc
 from tethertest.records.frames import axes_or_new, table
 
 if TYPE_CHECKING:
@@ -28,24 +29,26 @@ class Variable:
 class PiGroup:
     """A dimensionless product of variables, with exact exponents."""
 
-    name: str
-    exponents: dict[str, Fraction]
-    model: float | None = None
-    prototype: float | None = None
-    ratio: float | None = None  #: model over prototype
-    level: str = ""  #: matched, mild, violated or irrelevant
-    meaning: str = ""
+    name: Annotated[str, Doc("of the group")]
+    exponents: Annotated[dict[str, Fraction], Doc("variable -> exact exponent, such as -1/2")]
+    model: Annotated[float | None, Doc("value on the rig")] = None
+    prototype: Annotated[float | None, Doc("value on the prototype")] = None
+    ratio: Annotated[float | None, Doc("model over prototype")] = None
+    level: Annotated[str, Doc("matched, mild, violated or irrelevant")] = ""
+    meaning: Annotated[str, Doc("in words")] = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Similarity:
     """Model against prototype."""
 
-    groups: tuple[PiGroup, ...]
-    ratios: dict[str, float]  #: quantity -> prototype over model
-    conflicts: tuple[tuple[str, ...], ...]  #: minimal sets of demands that cannot hold together
-    rank: int
-    remarks: tuple[str, ...] = ()
+    groups: Annotated[tuple[PiGroup, ...], Doc("dimensionless products of the variables")]
+    ratios: Annotated[dict[str, float], Doc("quantity -> prototype over model")]
+    conflicts: Annotated[
+        tuple[tuple[str, ...], ...], Doc("smallest sets of demands that cannot hold together")
+    ]
+    rank: Annotated[int, Doc("of the matrix of dimensions")]
+    remarks: Annotated[tuple[str, ...], Doc("what a person should know")] = ()
 
     def to_pandas(self) -> pd.DataFrame:
         """Return the groups, one a row, with their values at both scales and how far they are from alike."""

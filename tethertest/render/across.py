@@ -1,32 +1,156 @@
-"""An analysis across runs as one JSON object, and its folder: SI, snake case, no number made here."""
+"""An analysis across runs for other programs, and its folder: SI, snake case, no number made here."""
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
-from tethertest.records.across import Across, Curve, CurvePoint, Group, Loop, RunChannel, RunPart, Step
+from tethertest.records.across import (
+    Across,
+    Curve,
+    CurvePoint,
+    Direction,
+    Group,
+    Loop,
+    RunChannel,
+    RunPart,
+    Step,
+)
 from tethertest.records.analysis import MEASURED
+from tethertest.records.described import Doc
+from tethertest.render.as_json import json_text
 from tethertest.render.blocks import Picture
+from tethertest.render.published import Paths, Span, taken
 from tethertest.render.write import write_files
 
 SUMMARY_NAME, PAGE_NAME = "across.json", "across.md"
 
 
-def across_summary(across: Across) -> dict[str, Any]:
-    """Return the object of ``analyze --across --json``; what JSON has no number for is null."""
-    return {
-        "path": across.path,
-        "significance": across.significance,
-        "runs": [_run(part) for part in across.runs],
-        "groups": [_group(group) for group in across.groups],
-        "curves": [_curve(curve) for curve in across.curves],
-        "loops": [_loop(loop) for loop in across.loops],
-        "notes": list(across.notes),
-    }
+@dataclass(frozen=True, slots=True)
+class ChannelInRun:
+    """What a run contributes of one channel."""
+
+    name: Annotated[str, Doc("sensor of the rig")]
+    side: Annotated[str, Doc("measured or replayed")]
+    kind: Annotated[str, Doc("what it measures")]
+    unit: Annotated[str, Doc("SI")]
+    at: Annotated[float | None, Doc("fraction of the cable's length from the bottom")]
+    lines_found: Annotated[int, Doc("how many lines are there")]
+    orders_found: Annotated[tuple[str, ...], Doc("their orders")]
+    no_lines: Annotated[str, Doc("why there are none", null="they were looked for")]
+    damage: Annotated[str, Doc("why its points are shown and not judged", null="they are judged")]
+    largest_dynamic: Annotated[float | None, Doc("largest value in the window less the value at rest")]
+    largest_raised_by_noise: Annotated[float, Doc("by how much noise may have raised largest_dynamic")]
+
+
+@dataclass(frozen=True, slots=True)
+class RunFound:
+    """One run of the folder."""
+
+    run: Annotated[str, Doc("its id")]
+    path: Annotated[str, Doc("its folder")]
+    date: Annotated[str, Doc("ISO 8601", null="not known")]
+    rig: Annotated[str, Doc("name in the rig file", null="not known")]
+    mode: Annotated[str, Doc("of the platform", null="not known")]
+    frequency: Annotated[float | None, Doc("of the drive, fitted [Hz]")]
+    nominal_frequency: Annotated[float | None, Doc("of the drive, as run.toml has it [Hz]")]
+    amplitude: Annotated[float | None, Doc("of the bottom motion at the drive [m]")]
+    amplitude_measured: Annotated[bool, Doc("false: the amplitude is the nominal one")]
+    nominal_amplitude: Annotated[float | None, Doc("as run.toml has it [m]")]
+    refused: Annotated[str, Doc("why the run is on no curve", null="it is")]
+    remarks: Annotated[tuple[str, ...], Doc("what a person should know")]
+    channels: Annotated[tuple[ChannelInRun, ...], Doc("measured and replayed")]
+
+
+@dataclass(frozen=True, slots=True)
+class BranchFound:
+    """Runs in the order of time between two turns of the setting."""
+
+    direction: Annotated[Direction, Doc("how the setting moved from run to run")]
+    runs: Annotated[tuple[str, ...], Doc("in the order of time")]
+
+
+@dataclass(frozen=True, slots=True)
+class GroupFound:
+    """Runs that differ in one setting of the drive only."""
+
+    against: Annotated[str, Doc("the setting: frequency or amplitude")]
+    rig: Annotated[str, Doc("name in the rig file")]
+    mode: Annotated[str, Doc("of the platform")]
+    fixed: Annotated[float | None, Doc("the other setting: amplitude [m] or frequency [Hz]")]
+    runs: Annotated[tuple[str, ...], Doc("in the order of time")]
+    branches: Annotated[tuple[BranchFound, ...], Doc("in the order of time")]
+    notes: Annotated[tuple[str, ...], Doc("what a person should know")]
+
+
+@dataclass(frozen=True, slots=True)
+class CurveFound:
+    """Amplitude of one order of one channel against one setting, along one branch."""
+
+    group: Annotated[int, Doc("place of its group, from 0")]
+    channel: Annotated[str, Doc("sensor of the rig")]
+    side: Annotated[str, Doc("measured or replayed")]
+    unit: Annotated[str, Doc("SI")]
+    order: Annotated[str, Doc("multiple of the drive frequency")]
+    direction: Annotated[Direction, Doc("how the setting moved from run to run")]
+    points: Annotated[tuple[CurvePoint, ...], Doc("in the order of time")]
+    largest: Annotated[CurvePoint | None, Doc("of those that are sure to be lines and are judged")]
+    steps: Annotated[tuple[Step, ...], Doc("that the trend on both sides does not carry")]
+    significance: Annotated[float, Doc("chance of one false jump in the curve")]
+    scatter: Annotated[float, Doc("from run to run, relative standard deviation", null="not known")]
+    no_steps: Annotated[str, Doc("why jumps were not looked for", null="they were")]
+
+
+@dataclass(frozen=True, slots=True)
+class LoopFound:
+    """An up-sweep and a down-sweep of one order of one channel."""
+
+    group: Annotated[int, Doc("place of its group, from 0")]
+    channel: Annotated[str, Doc("sensor of the rig")]
+    side: Annotated[str, Doc("measured or replayed")]
+    unit: Annotated[str, Doc("SI")]
+    order: Annotated[str, Doc("multiple of the drive frequency")]
+    hysteresis: Annotated[bool, Doc("whether up and down differ anywhere")]
+    differs: Annotated[Span | None, Doc("settings between which they differ")]
+    area: Annotated[float, Doc("integral of up less down over the setting both have")]
+    area_interval: Annotated[Span, Doc("95 % of the area")]
+    largest: Annotated[float, Doc("up less down where they differ most")]
+    largest_at: Annotated[float, Doc("that setting")]
+    significance: Annotated[float, Doc("chance to call two equal branches different")]
+
+
+@dataclass(frozen=True, slots=True)
+class AcrossFound:
+    """What many runs show together: the content of across.json."""
+
+    path: Annotated[str, Doc("the folder")]
+    significance: Annotated[float, Doc("chance of one false jump in the folder")]
+    runs: Annotated[tuple[RunFound, ...], Doc("all of them, in the order of time")]
+    groups: Annotated[tuple[GroupFound, ...], Doc("by the setting that differs")]
+    curves: Annotated[tuple[CurveFound, ...], Doc("by group, channel and order")]
+    loops: Annotated[tuple[LoopFound, ...], Doc("where a sweep went up and down")]
+    notes: Annotated[tuple[str, ...], Doc("what a person should know")]
+
+
+@dataclass(frozen=True, slots=True)
+class PrintedAcross(AcrossFound):
+    """What ``analyze --across --json`` prints: the content of across.json, and where the files are."""
+
+    paths: Paths
+
+
+def across_summary(across: Across) -> AcrossFound:
+    """Return runs analysed together as the record of their JSON."""
+    return taken(
+        AcrossFound,
+        across,
+        runs=tuple(_run(part) for part in across.runs),
+        groups=tuple(_group(group) for group in across.groups),
+        curves=tuple(_curve(curve) for curve in across.curves),
+        loops=tuple(_loop(loop) for loop in across.loops),
+    )
 
 
 def write_across(across: Across, folder: Path) -> tuple[Path, ...]:
@@ -47,8 +171,8 @@ def write_across(across: Across, folder: Path) -> tuple[Path, ...]:
     from tethertest.render.figures.across import across_figures  # brings matplotlib
 
     figures = across_figures(across)
-    text = json.dumps(across_summary(across), indent=1, ensure_ascii=False, allow_nan=False)
-    contents = {PAGE_NAME: _page(across, figures).encode(), SUMMARY_NAME: f"{text}\n".encode()}
+    text = json_text(across_summary(across), indent=1)
+    contents = {PAGE_NAME: _page(across, figures).encode(), SUMMARY_NAME: text.encode()}
     contents |= {f"{name}.png": made.png for name, made in figures.items()}
     return write_files(folder, contents)
 
@@ -79,112 +203,51 @@ def _page(across: Across, figures: Mapping[str, Picture]) -> str:
     return "\n".join([*out, *across.notes]).rstrip() + "\n"
 
 
-def _run(part: RunPart) -> dict[str, Any]:
-    return {
-        "run": part.run,
-        "path": part.path,
-        "date": part.date or None,
-        "rig": part.rig or None,
-        "mode": part.mode or None,
-        "frequency": part.frequency,
-        "nominal_frequency": part.nominal_frequency,
-        "amplitude": part.amplitude,
-        "amplitude_measured": part.amplitude_measured,
-        "nominal_amplitude": part.nominal_amplitude,
-        "refused": part.refused or None,
-        "remarks": list(part.remarks),
-        "channels": [_channel(channel) for channel in part.channels],
-    }
+def _run(part: RunPart) -> RunFound:
+    return taken(RunFound, part, channels=tuple(_channel(channel) for channel in part.channels))
 
 
-def _channel(channel: RunChannel) -> dict[str, Any]:
-    return {
-        "name": channel.name,
-        "side": channel.side,
-        "kind": channel.kind,
-        "unit": channel.unit,
-        "at": channel.at,
-        "lines_found": len(channel.found),
-        "orders_found": [line.order for line in channel.found],
-        "no_lines": channel.no_lines or None,
-        "damage": channel.damage or None,
-        "largest_dynamic": channel.largest,
-        "largest_raised_by_noise": channel.noise,
-    }
+def _channel(channel: RunChannel) -> ChannelInRun:
+    return taken(
+        ChannelInRun,
+        channel,
+        lines_found=len(channel.found),
+        orders_found=tuple(line.order for line in channel.found),
+        largest_dynamic=channel.largest,
+        largest_raised_by_noise=channel.noise,
+    )
 
 
-def _group(group: Group) -> dict[str, Any]:
-    return {
-        "against": group.against,
-        "rig": group.rig,
-        "mode": group.mode,
-        "fixed": group.fixed,
-        "runs": list(group.runs),
-        "branches": [
-            {
-                "direction": branch.direction.value,
-                "runs": [group.runs[member] for member in branch.members],
-            }
-            for branch in group.branches
-        ],
-        "notes": list(group.notes),
-    }
+def _group(group: Group) -> GroupFound:
+    branches = (
+        BranchFound(branch.direction, tuple(group.runs[member] for member in branch.members))
+        for branch in group.branches
+    )
+    return taken(GroupFound, group, branches=tuple(branches))
 
 
-def _curve(curve: Curve) -> dict[str, Any]:
+def _curve(curve: Curve) -> CurveFound:
     judged = curve.judgement
-    return {
-        "group": curve.group,
-        "channel": curve.channel,
-        "side": curve.side,
-        "unit": curve.unit,
-        "order": curve.order,
-        "direction": curve.direction.value,
-        "points": [_point(point) for point in curve.points],
-        "largest": None if curve.largest is None else _point(curve.largest),
-        "steps": [_step(step) for step in judged.steps],
-        "significance": judged.significance,
-        "scatter": judged.scatter if math.isfinite(judged.scatter) else None,
-        "no_steps": judged.refused or None,
-    }
+    return taken(
+        CurveFound,
+        curve,
+        steps=judged.steps,
+        significance=judged.significance,
+        scatter=judged.scatter,
+        no_steps=judged.refused,
+    )
 
 
-def _point(point: CurvePoint) -> dict[str, Any]:
-    return {
-        "run": point.run,
-        "setting": point.setting,
-        "amplitude": point.amplitude,
-        "standard_error": point.standard_error,
-        "interval": list(point.interval),
-        "verdict": point.verdict,
-        "found": point.found,
-        "damage": point.damage or None,
-    }
-
-
-def _step(step: Step) -> dict[str, Any]:
-    return {
-        "verdict": step.verdict.value,
-        "interval": list(step.interval),
-        "amplitudes": list(step.amplitudes),
-        "excess": step.excess if math.isfinite(step.excess) else None,
-        "reason": step.reason,
-    }
-
-
-def _loop(loop: Loop) -> dict[str, Any]:
+def _loop(loop: Loop) -> LoopFound:
     found = loop.hysteresis
-    return {
-        "group": loop.group,
-        "channel": loop.channel,
-        "side": loop.side,
-        "unit": loop.unit,
-        "order": loop.order,
-        "hysteresis": found.found,
-        "differs": None if found.differs is None else list(found.differs),
-        "area": found.area,
-        "area_interval": list(found.interval),
-        "largest": found.largest,
-        "largest_at": found.largest_at,
-        "significance": found.significance,
-    }
+    return taken(
+        LoopFound,
+        loop,
+        hysteresis=found.found,
+        differs=found.differs,
+        area=found.area,
+        area_interval=found.interval,
+        largest=found.largest,
+        largest_at=found.largest_at,
+        significance=found.significance,
+    )

@@ -1,203 +1,221 @@
-"""An analysis as one JSON object: SI, snake case, no number made here."""
+"""An analysis for other programs: SI, snake case, no number made here."""
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated
 
-from tethertest.records.analysis import Analysis, ChannelAnalysis
-from tethertest.records.events import CycleCount, Front, Snap, WaveSpeed
-from tethertest.records.lines import Line
-from tethertest.records.waves import OrderWaves, Waves
+from tethertest.records.analysis import Analysis, ChannelAnalysis, Peak, WaveFindings
+from tethertest.records.described import Doc, MaybeNumber
+from tethertest.records.events import Cycle, CycleCount, Extremes, Front, Interval
+from tethertest.records.lines import DriveFit
+from tethertest.records.response import NaturalFrequency
+from tethertest.records.waves import LargestTension, OrderWaves, Waves
+from tethertest.render.published import EventFound, LineFound, Paths, Span, event_found, span_of, taken
 
 #: load cycles listed, the largest first; their number and equivalent range cover all
 CYCLES_LISTED = 20
+MaybeInterval = tuple[MaybeNumber, MaybeNumber]
 
 
-def analysis_summary(analysis: Analysis) -> dict[str, Any]:
-    """Return the object of ``analyze --json``; what JSON has no number for is null."""
-    drive, window, waves = analysis.drive, analysis.window, analysis.waves
-    largest = waves.largest
-    return {
-        "path": analysis.path,
-        "name": analysis.name,
-        "drive": None
-        if drive is None
-        else {
-            "frequency": drive.frequency,
-            "standard_error": drive.standard_error,
-            "channels": list(drive.channels),
-        },
-        "window": None if window is None else [window.start, window.stop],
-        "window_reason": None if window is None else window.reason,
-        "significance": analysis.significance,
-        "mains": analysis.mains,
-        "natural_frequencies": [
-            {"name": natural.name, "frequency": natural.frequency} for natural in analysis.natural_frequencies
-        ],
-        "channels": [_channel(item) for item in analysis.channels],
-        "waves": {
-            "fronts": [_front(front) for front in waves.fronts],
-            "speed": None if waves.speed is None else _speed(waves.speed),
-            "parts": [_waves(part) for part in waves.parts],
-            "largest_tension": None
-            if largest is None
-            else {
-                "at": largest.at,
-                "at_interval": list(largest.at_interval),
-                "time": largest.time,
-                "value": largest.value,
-                "bottom": largest.bottom,
-                "top": largest.top,
-                "over_rest": {
-                    "value": largest.over_rest,
-                    "at": largest.over_rest_at,
-                    "time": largest.over_rest_time,
-                },
-            },
-            "remarks": list(waves.remarks),
-        },
-        "notes": list(analysis.notes),
-    }
+@dataclass(frozen=True, slots=True)
+class CyclesFound:
+    """A rainflow count and what it amounts to."""
+
+    number: Annotated[float, Doc("cycles, halves counted as such")]
+    smallest_range: Annotated[float, Doc("ranges below this are noise and left out")]
+    exponent: Annotated[float, Doc("slope of the S-N curve")]
+    equivalent_range: Annotated[float, Doc("of equally many cycles of one range that do the same damage")]
+    largest: Annotated[tuple[Cycle, ...], Doc(f"the {CYCLES_LISTED} of the largest range")]
 
 
-def _channel(item: ChannelAnalysis) -> dict[str, Any]:
-    channel, ends = item.channel, item.extremes
-    events: list[dict[str, Any]] = [
-        {
-            "kind": "slack",
-            "start": event.start,
-            "stop": event.stop,
-            "lowest": event.value,
-        }
-        for event in item.events
-        if event.kind == "slack"
+@dataclass(frozen=True, slots=True)
+class ChannelAnalysed:
+    """One channel and all that was found in it."""
+
+    name: Annotated[str, Doc("sensor of the rig, or channel of the log")]
+    side: Annotated[str, Doc("measured or replayed")]
+    kind: Annotated[str, Doc("what it measures")]
+    unit: Annotated[str, Doc("SI, where the log's unit is known")]
+    lines: Annotated[tuple[LineFound, ...], Doc("by order")]
+    no_lines: Annotated[str, Doc("why there are none", null="they were looked for")]
+    peaks: Annotated[tuple[Peak, ...], Doc("of a blind search, where there is no drive to go by")]
+    events: Annotated[tuple[EventFound, ...], Doc("in order of time")]
+    no_events: Annotated[str, Doc("why slack was not looked for", null="it was, if this is a tension")]
+    extremes: Annotated[Extremes | None, Doc("in the window")]
+    cycles: Annotated[CyclesFound | None, Doc("load cycles of a tension in the window")]
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedFound:
+    """A wave speed from fronts at several sensors."""
+
+    kind: Annotated[str, Doc("axial or transverse")]
+    speed: Annotated[float, Doc("[m/s]", null="the fronts may have come at once")]
+    interval: Annotated[MaybeInterval, Doc("95 % of the speed [m/s]; null: no bound")]
+    implied: Annotated[str, Doc("what the value is: axial_stiffness or tension")]
+    value: Annotated[float, Doc("that goes with the speed [N]", null="no bound")]
+    value_interval: Annotated[MaybeInterval, Doc("95 % of the value [N]; null: no bound")]
+
+
+@dataclass(frozen=True, slots=True)
+class OrderSeparated:
+    """The up- and the down-going wave of one order of the drive; amplitudes are peaks of cosines."""
+
+    order: Annotated[str, Doc("multiple of the drive frequency")]
+    frequency: Annotated[float, Doc("[Hz]")]
+    up: Annotated[float, Doc("amplitude of the wave going up [N]")]
+    up_interval: Annotated[Interval, Doc("95 % of up [N]")]
+    down: Annotated[float, Doc("amplitude of the wave going down [N]")]
+    down_interval: Annotated[Interval, Doc("95 % of down [N]")]
+    energy_ratio: Annotated[float, Doc("weaker over stronger wave, 0 travelling to 1 standing")]
+    energy_ratio_interval: Annotated[Interval, Doc("95 % of energy_ratio")]
+    standing_wave_ratio: Annotated[
+        float, Doc("largest over smallest amplitude along an endless cable", null="infinite")
     ]
-    events += [_snap(snap) for snap in item.snaps]
-    return {
-        "name": channel.name,
-        "side": item.side,
-        "kind": channel.kind,
-        "unit": channel.unit,
-        "lines": [] if item.lines is None else [_line(line) for line in item.lines.lines],
-        "no_lines": item.no_lines or None,
-        "peaks": [
-            {
-                "frequency": peak.frequency,
-                "amplitude": peak.amplitude,
-                "p_value": peak.p_value,
-                "significant": peak.significant,
-            }
-            for peak in item.peaks
-        ],
-        "events": sorted(events, key=lambda event: float(event["start"])),
-        "no_events": item.no_events or None,
-        "extremes": None
-        if ends is None
-        else {
-            "maximum": ends.maximum,
-            "maximum_time": ends.maximum_time,
-            "minimum": ends.minimum,
-            "minimum_time": ends.minimum_time,
-        },
-        "cycles": None if item.cycles is None else _cycles(item.cycles),
-    }
+    standing: Annotated[bool | None, Doc("false: travelling; null: the interval does not settle it")]
+    power: Annotated[float, Doc("mean power carried upwards [W]")]
+    power_interval: Annotated[Interval, Doc("95 % of the power [W]")]
+    refused: Annotated[None, Doc("the waves were separated")] = None
 
 
-def _line(line: Line) -> dict[str, Any]:
-    return {
-        "order": line.order,
-        "frequency": line.frequency,
-        "amplitude": line.amplitude,
-        "phase": line.phase,
-        "interval": list(line.interval),
-        "standard_error": line.standard_error,
-        "calibration_error": line.calibration_error,
-        "p_value": line.p_value,
-        "significant_above": line.significant_above,
-        "verdict": line.verdict.value,
-        "reason": line.reason,
-    }
+@dataclass(frozen=True, slots=True)
+class OrderRefused:
+    """An order whose waves could not be separated."""
+
+    order: Annotated[str, Doc("multiple of the drive frequency")]
+    frequency: Annotated[float, Doc("[Hz]")]
+    refused: Annotated[str, Doc("why")]
 
 
-def _snap(snap: Snap) -> dict[str, Any]:
-    return {
-        "kind": "snap",
-        "start": snap.start,
-        "stop": snap.peak_time,
-        "peak": snap.peak,
-        "peak_interval": list(snap.peak_interval),
-        "rise_time": snap.rise_time,
-        "rise_resolved": snap.rise_resolved,
-        "impulse": snap.impulse,
-        "front": snap.front,
-        "speed": snap.speed,
-        "speed_interval": None if snap.speed_interval is None else list(snap.speed_interval),
-        "arrived_speed": snap.arrived_speed,
-    }
+@dataclass(frozen=True, slots=True)
+class WavesFound:
+    """Waves of one cable, seen at one section or by several sensors."""
+
+    side: Annotated[str, Doc("measured or replayed")]
+    section: Annotated[str, Doc("what they rest on")]
+    at: Annotated[float, Doc("fraction of the length from the bottom that the phases refer to")]
+    orders: Annotated[tuple[OrderSeparated | OrderRefused, ...], Doc("by order")]
 
 
-def _cycles(count: CycleCount) -> dict[str, Any]:
-    return {
-        "number": count.number,
-        "smallest_range": count.smallest,
-        "exponent": count.exponent,
-        "equivalent_range": count.equivalent_range,
-        "largest": [
-            {"range": cycle.range, "mean": cycle.mean, "count": cycle.count}
-            for cycle in count.cycles[:CYCLES_LISTED]
-        ],
-    }
+@dataclass(frozen=True, slots=True)
+class OverRest:
+    """The largest tension less that of the same place at rest."""
+
+    value: Annotated[float, Doc("[N]")]
+    at: Annotated[float, Doc("fraction of the length from the bottom")]
+    time: Annotated[float, Doc("[s]")]
 
 
-def _front(front: Front) -> dict[str, Any]:
-    return {
-        "channel": front.channel,
-        "at": front.at,
-        "time": front.time,
-        "interval": list(front.interval),
-    }
+@dataclass(frozen=True, slots=True)
+class LargestFound:
+    """Where along the cable and when the replayed tension is largest."""
+
+    at: Annotated[float, Doc("fraction of the length from the bottom")]
+    at_interval: Annotated[
+        Interval, Doc("fractions where the largest tension comes within the stated error of it")
+    ]
+    time: Annotated[float, Doc("[s]")]
+    value: Annotated[float, Doc("[N]")]
+    bottom: Annotated[float, Doc("largest tension at the bottom [N]")]
+    top: Annotated[float, Doc("largest tension at the top [N]")]
+    over_rest: OverRest
 
 
-def _speed(speed: WaveSpeed) -> dict[str, Any]:
-    return {
-        "kind": speed.kind,
-        "speed": _finite(speed.speed),
-        "interval": [_finite(end) for end in speed.interval],
-        "implied": speed.implied,
-        "value": _finite(speed.value),
-        "value_interval": [_finite(end) for end in speed.value_interval],
-    }
+@dataclass(frozen=True, slots=True)
+class AllWaves:
+    """Waves of a run."""
+
+    fronts: Annotated[tuple[Front, ...], Doc("onsets of one wave at several sensors")]
+    speed: Annotated[SpeedFound | None, Doc("from the fronts")]
+    parts: Annotated[tuple[WavesFound, ...], Doc("waves up and down, by what they rest on")]
+    largest_tension: Annotated[LargestFound | None, Doc("null: nothing was replayed")]
+    remarks: Annotated[tuple[str, ...], Doc("why something is not there")]
 
 
-def _waves(waves: Waves) -> dict[str, Any]:
-    return {
-        "side": waves.source,
-        "section": waves.section,
-        "at": waves.at,
-        "orders": [_order(order) for order in waves.orders],
-    }
+@dataclass(frozen=True, slots=True)
+class AnalysisFound:
+    """What an analysis found: the content of analysis.json."""
+
+    path: Annotated[str, Doc("what was analysed")]
+    name: Annotated[str, Doc("id of the run, or name of the log")]
+    drive: Annotated[DriveFit | None, Doc("as fitted; null: no drive")]
+    window: Annotated[Span | None, Doc("start and stop [s]")]
+    window_reason: Annotated[str | None, Doc("how the window was found")]
+    significance: Annotated[float, Doc("chance of one false line in a channel")]
+    mains: Annotated[float, Doc("frequency of the mains [Hz]")]
+    natural_frequencies: Annotated[tuple[NaturalFrequency, ...], Doc("of the rig, and those given")]
+    channels: Annotated[tuple[ChannelAnalysed, ...], Doc("measured, then replayed")]
+    waves: AllWaves
+    notes: Annotated[tuple[str, ...], Doc("what a person should know")]
 
 
-def _order(order: OrderWaves) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class WrittenAnalysis(AnalysisFound):
+    """What ``analyze --json`` prints where it writes a folder too."""
+
+    paths: Paths
+
+
+def analysis_summary(analysis: Analysis, more_notes: tuple[str, ...] = ()) -> AnalysisFound:
+    """Return an analysis as the record of its JSON.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    more_notes : tuple of str
+        Beside those of the analysis, such as figures that could not be drawn.
+    """
+    window = analysis.window
+    return taken(
+        AnalysisFound,
+        analysis,
+        window=span_of(window),
+        window_reason=None if window is None else window.reason,
+        channels=tuple(_channel(item) for item in analysis.channels),
+        waves=_waves(analysis.waves),
+        notes=analysis.notes + more_notes,
+    )
+
+
+def _channel(item: ChannelAnalysis) -> ChannelAnalysed:
+    events = [event_found(event) for event in item.events]
+    return taken(
+        ChannelAnalysed,
+        item,
+        name=item.channel.name,
+        kind=item.channel.kind,
+        unit=item.channel.unit,
+        lines=() if item.lines is None else tuple(taken(LineFound, line) for line in item.lines.lines),
+        events=tuple(sorted(events, key=lambda event: event.start)),
+        cycles=None if item.cycles is None else _cycles(item.cycles),
+    )
+
+
+def _cycles(count: CycleCount) -> CyclesFound:
+    return taken(CyclesFound, count, smallest_range=count.smallest, largest=count.cycles[:CYCLES_LISTED])
+
+
+def _waves(waves: WaveFindings) -> AllWaves:
+    return taken(
+        AllWaves,
+        waves,
+        speed=None if waves.speed is None else taken(SpeedFound, waves.speed),
+        parts=tuple(_part(part) for part in waves.parts),
+        largest_tension=None if waves.largest is None else _largest(waves.largest),
+    )
+
+
+def _part(waves: Waves) -> WavesFound:
+    return taken(WavesFound, waves, side=waves.source, orders=tuple(_order(order) for order in waves.orders))
+
+
+def _order(order: OrderWaves) -> OrderSeparated | OrderRefused:
     if order.refused:
-        return {"order": order.order, "frequency": order.frequency, "refused": order.refused}
-    return {
-        "order": order.order,
-        "frequency": order.frequency,
-        "up": order.up,
-        "up_interval": list(order.up_interval),
-        "down": order.down,
-        "down_interval": list(order.down_interval),
-        "energy_ratio": order.energy_ratio,
-        "energy_ratio_interval": list(order.energy_ratio_interval),
-        "standing_wave_ratio": _finite(order.standing_wave_ratio),
-        "standing": order.is_standing,
-        "power": order.power,
-        "power_interval": list(order.power_interval),
-        "refused": None,
-    }
+        return taken(OrderRefused, order)
+    return taken(OrderSeparated, order, standing=order.is_standing, refused=None)
 
 
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+def _largest(largest: LargestTension) -> LargestFound:
+    over_rest = OverRest(largest.over_rest, largest.over_rest_at, largest.over_rest_time)
+    return taken(LargestFound, largest, over_rest=over_rest)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -11,6 +10,7 @@ from tethertest.errors import DataError
 from tethertest.records.analysis import MEASURED, Analysis, ChannelAnalysis
 from tethertest.records.channel import Window
 from tethertest.render.analysis import analysis_summary
+from tethertest.render.as_json import json_text
 from tethertest.render.order_table import analysis_page, order_rows
 from tethertest.render.scales import scale_for
 from tethertest.render.write import write_files
@@ -54,11 +54,9 @@ def write_analysis(analysis: Analysis, folder: Path) -> tuple[tuple[Path, ...], 
         drawn = _figures(item, analysis, _file_name(item, used), left_out)
         figures.update(drawn)
         shown.append((item, tuple(drawn)))
-    summary = analysis_summary(analysis)
-    summary["notes"] += left_out
     contents = {
         PAGE_NAME: analysis_page(analysis, shown, left_out).encode("utf-8"),
-        SUMMARY_NAME: (json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode(),
+        SUMMARY_NAME: json_text(analysis_summary(analysis, tuple(left_out)), indent=1).encode(),
     }
     if any(item.lines is not None for item in analysis.channels):
         contents[TABLE_NAME] = order_rows(analysis).encode("utf-8")

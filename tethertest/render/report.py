@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from tethertest.records.report import Report
-from tethertest.render.summary import summary_text
+from tethertest.render.as_json import json_text
+from tethertest.render.summary import summary
 from tethertest.render.write import write_files
 
 PAGE_NAME = "report.html"
@@ -36,6 +37,6 @@ def write_report(report: Report, folder: Path) -> tuple[Path, ...]:
 
     contents = {
         PAGE_NAME: page(report).encode("utf-8"),
-        SUMMARY_NAME: summary_text(report).encode("utf-8"),
+        SUMMARY_NAME: json_text(summary(report), indent=2, sort_keys=True).encode("utf-8"),
     }
     return write_files(folder, contents)

@@ -82,7 +82,9 @@ def _bounded(bound: SI | None, value: float, key: str) -> Iterator[tuple[str, st
 def _parts(hint: Any) -> Iterator[SI]:
     """Yield the bounds anywhere in an annotation."""
     if get_origin(hint) is Annotated:
-        yield from (extra for extra in get_args(hint)[1:] if isinstance(extra, SI))
+        kind, *extras = get_args(hint)
+        yield from (extra for extra in extras if isinstance(extra, SI))
+        yield from _parts(kind)
     else:
         for inner in get_args(hint):
             yield from _parts(inner)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from statistics import NormalDist
 from typing import Final
 
@@ -77,6 +78,14 @@ def measured_snaps(
         if snap is not None:
             snaps.append(snap)
     return tuple(snaps)
+
+
+def with_snaps(channel: Channel, events: Sequence[Event], medium: Medium | None = None) -> tuple[Event, ...]:
+    """Return the events of a tension channel, its snaps with their numbers; see `measured_snaps`."""
+    snaps = {snap.start: snap for snap in measured_snaps(channel, events, medium)}
+    return tuple(
+        replace(event, snap=snaps.get(event.start)) if event.kind == "snap" else event for event in events
+    )
 
 
 def _measured(channel: Channel, event: Event, following: float, medium: Medium | None) -> Snap | None:

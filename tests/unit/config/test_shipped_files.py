@@ -1,13 +1,11 @@
 """Every file in rigs/ loads, says what the article says, and matches its schema."""
 
-import json
 from pathlib import Path
-from typing import get_args
 
 import pytest
 
-from tethertest.readers import json_schema, load_prototype, load_prototype_of, load_rig, load_scene
-from tethertest.readers.config.schema import FileKind
+from tethertest.pipeline.schemas import schema_of
+from tethertest.readers import load_prototype, load_prototype_of, load_rig, load_scene
 from tethertest.readers.config.toml import read_document
 
 RIGS = Path(__file__).parents[3] / "rigs"
@@ -48,7 +46,7 @@ def test_schema_hint_points_to_the_schema_of_its_kind(path):
 
 @pytest.mark.parametrize("path", FILES, ids=name_of)
 def test_every_shipped_key_is_in_the_schema(path):
-    schema = json_schema(kind_of(path))
+    schema = schema_of(kind_of(path))
 
     def walk(here, node):
         node = schema["$defs"][node["$ref"].rsplit("/", 1)[1]] if "$ref" in node else node
@@ -66,15 +64,9 @@ def test_every_shipped_key_is_in_the_schema(path):
     walk(read_document(path, "file").data, schema)
 
 
-@pytest.mark.parametrize("kind", get_args(FileKind))
-def test_committed_schemas_are_up_to_date(kind):
-    committed = json.loads((RIGS / "schema" / f"{kind}.schema.json").read_text(encoding="utf-8"))
-    assert committed == json_schema(kind)
-
-
-@pytest.mark.parametrize("kind", get_args(FileKind))
+@pytest.mark.parametrize("kind", ["run", "rig", "prototype", "scene"])
 def test_schema_forbids_unknown_keys_in_every_table(kind):
-    schema = json_schema(kind)
+    schema = schema_of(kind)
     assert schema["$schema"].endswith("2020-12/schema")
     for table in (schema, *schema["$defs"].values()):
         assert table["additionalProperties"] is False
@@ -83,7 +75,7 @@ def test_schema_forbids_unknown_keys_in_every_table(kind):
 
 
 def test_schema_describes_a_field_by_its_comment_and_unit():
-    sensor = json_schema("rig")["$defs"]["Sensor"]["properties"]
+    sensor = schema_of("rig")["$defs"]["Sensor"]["properties"]
     assert "fraction of the length from the bottom" in sensor["at"]["description"]
     assert "quantity in N" in sensor["rated"]["description"]
 

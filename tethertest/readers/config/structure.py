@@ -11,11 +11,10 @@ from typing import Annotated, Any, TypeVar, Union, cast, get_args, get_origin, g
 
 from tethertest.readers.config.problems import Problem, dotted, suggestion
 from tethertest.readers.config.toml import KeyPath
+from tethertest.records.described import NOT_IN_FILES
 from tethertest.records.quantity import SI
 from tethertest.units import parse_quantity
 
-#: fields of records that no file has: `uncertainties` and `with_calibrations` fill them
-DERIVED_FIELDS = frozenset({"uncertainty", "calibrations"})
 #: unknown keys of one table that are told; a search for the nearest name takes time
 _UNKNOWN = 50
 
@@ -68,7 +67,7 @@ def field_types(kind: type) -> dict[str, Any]:
     """Return the annotation of every field that a file may have, units included."""
     hints = get_type_hints(kind, include_extras=True)
     names = [field.name for field in fields(kind)]
-    return {name: hints[name] for name in names if name not in DERIVED_FIELDS}
+    return {name: hints[name] for name in names if NOT_IN_FILES not in get_args(hints[name])}
 
 
 @cache
@@ -196,11 +195,13 @@ def _children(kind: Any, data: Any) -> Iterator[tuple[Any, Any, str | int]]:
 
 def _branch(kind: Any, data: Any) -> Any:
     """Return the member of a union that a value is meant for: a tuple for an array, else the other one."""
+    if get_origin(kind) is Annotated and _unit(kind) is None:
+        kind = get_args(kind)[0]
     if get_origin(kind) not in {Union, UnionType}:
         return kind
     members = [member for member in get_args(kind) if member is not NoneType]
     meant = [member for member in members if (get_origin(member) is tuple) == isinstance(data, list)]
-    return (meant or members)[0]
+    return _branch((meant or members)[0], data)
 
 
 def _type_at(kind: Any, key: KeyPath) -> Any:

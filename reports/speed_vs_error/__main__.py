@@ -1,4 +1,4 @@
-"""``python -m reports.speed_vs_error [--peers] [-o DIR]``: exit 1 where a target is missed."""
+"""``python -m reports.speed_vs_error [--peers] [-o DIR]``: speed against error on the shipped scenes."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ _SCENES = (
 )
 
 
-def main(arguments: list[str]) -> int:
-    """Measure the shipped scenes, print the page, write it where asked, and return the exit code.
+def main(arguments: list[str]) -> None:
+    """Measure the shipped scenes, print the page, and write it where asked.
 
-    What the clock decides depends on the machine: it is shown, and misses nothing.
+    It shows what is missed and refuses nothing: half of the targets are the clock's, and the tests hold the
+    others.
     """
     parser = argparse.ArgumentParser(prog="python -m reports.speed_vs_error", description=__doc__)
     parser.add_argument("scenes", nargs="*", default=_SCENES, help="of rigs/scenes, without .toml [seven]")
@@ -49,8 +50,7 @@ def main(arguments: list[str]) -> int:
         if compared:
             files["moordyn.md"] = peers_page(compared, command).encode()
         write_files(asked.output, files)
-    return 0 if all(target.met or target.timed for target in targets) else 1
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(sys.argv[1:])

@@ -16,6 +16,7 @@ _TYPES: dict[str, type | tuple[type, ...]] = {
 _KNOWN = {
     "$schema", "$defs", "$ref", "title", "description", "examples", "format", "type", "anyOf", "enum",
     "const", "properties", "required", "additionalProperties", "items", "prefixItems", "minItems", "maxItems",
+    "propertyNames",
 }  # fmt: skip
 
 
@@ -47,6 +48,7 @@ def _faults_of_object(
     properties, others = schema.get("properties", {}), schema.get("additionalProperties", True)
     found = [f"{at}.{key} is missing" for key in schema.get("required", ()) if key not in value]
     for key, item in value.items():
+        found += faults(key, schema.get("propertyNames", {}), root, f"the key {at}.{key}")
         if key in properties:
             found += faults(item, properties[key], root, f"{at}.{key}")
         elif others is False:

@@ -9,6 +9,7 @@ from reports.clock_errors.bound import Bound
 from reports.clock_errors.random_runs import SyntheticRun, random_run
 from reports.clock_errors.rig import RIG
 from tethertest.conditioning.clocks import fitted_clock
+from tethertest.records.channel import Severity
 from tethertest.records.rig import Rig
 
 #: an interval of 95 % reaches this many standard errors
@@ -61,7 +62,7 @@ def judged(number: int, rig: Rig = RIG) -> Judged:
     """Align the run of a number and compare."""
     run = random_run(number, rig)
     fit, findings = fitted_clock(run.clock, run.channels, run.reference, run.run, run.guide)
-    fatal = tuple(f"{item.kind}: {item.text}" for item in findings if item.severity == "fatal")
+    fatal = tuple(f"{item.kind}: {item.text}" for item in findings if item.severity == Severity.FATAL)
     error = fit.offset - run.offset
     outcome: Outcome = "refused" if fatal else "fitted"
     if not fatal and abs(error) > _other_cycle(run):

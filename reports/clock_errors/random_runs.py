@@ -29,6 +29,7 @@ from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel
 from tethertest.records.rig import Rig
 from tethertest.records.run import Drive, Log, Run, RunFile, RunPlatform
+from tethertest.units import Kind as ChannelKind
 
 Kind = Literal["strain", "motion"]
 
@@ -129,7 +130,7 @@ def random_run(number: int, rig: Rig = RIG) -> SyntheticRun:
         encoder = samplings[1]
         heave = CubicSpline(time, height)(encoder.true)
         heave = heave + ENCODER_NOISE * size[1] * random.standard_normal(heave.size)
-        channels = (encoder.channel("heave", "displacement", "m", heave, 0.0),)
+        channels = (encoder.channel("heave", ChannelKind.DISPLACEMENT, "m", heave, 0.0),)
         noises = (CELL_NOISE * size[0], ENCODER_NOISE * size[1])
         stated = stated_bar(mode)
         uncertain = standard_uncertainties(rig, mode, stated)
@@ -160,7 +161,7 @@ def _cells(
         hum = HUM * np.sin(2.0 * np.pi * (MAINS * sampling.true + random.uniform()))
         values = REST + CubicSpline(time, tension)(sampling.true) + zero + hum
         values = values + noise * random.standard_normal(values.size)
-        cells.append(sampling.channel(name, "tension", "N", values, place))
+        cells.append(sampling.channel(name, ChannelKind.TENSION, "N", values, place))
     return tuple(cells)
 
 
@@ -181,7 +182,7 @@ def _gratings(
         strain = gain * ((1.0 - place) * bottom + place * top) / stiffness
         values = WAVELENGTH * np.exp(GAUGE_FACTOR * strain + THERMAL * warming)
         values = values + noise * random.standard_normal(values.size)
-        gratings.append(sampling.channel(f"fbg{number}", "wavelength", "m", values, place))
+        gratings.append(sampling.channel(f"fbg{number}", ChannelKind.WAVELENGTH, "m", values, place))
     return tuple(gratings)
 
 

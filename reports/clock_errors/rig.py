@@ -11,6 +11,7 @@ from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable, Platform, PlatformMode
 from tethertest.records.channel import Channel
 from tethertest.records.rig import Instrument, Limits, Rig, Sensor
+from tethertest.units import Kind
 
 #: gratings stand here, as fractions of the length
 PLACES = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -88,7 +89,7 @@ class Expected:
         time = np.arange(heave.time[0], heave.time[-1], EXPECTED_STEP)
         height = np.interp(time, heave.time[heave.usable], heave.values[heave.usable])
         values = answered(height, EXPECTED_STEP, stated_bar(self.mode))
-        return Channel("expected", "tension", "N", time, values, np.zeros(time.size, np.uint16), at=0.0)
+        return Channel("expected", Kind.TENSION, "N", time, values, np.zeros(time.size, np.uint16), at=0.0)
 
 
 def answered(height: FloatArray, step: float, bar: Bar, place: float = 0.0) -> FloatArray:

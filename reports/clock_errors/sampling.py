@@ -9,6 +9,7 @@ import numpy as np
 from tethertest.conditioning.stamps import audited
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, RawLog
+from tethertest.units import Kind
 
 #: how often stamps are what
 STAMPS = {"exact": 0.55, "jitter": 0.2, "12.5 ms": 0.15, "1 ms": 0.1}
@@ -60,7 +61,7 @@ class Sampling:
         self.true = true[result.rows]
         self._flags = result.flags
 
-    def channel(self, name: str, kind: str, unit: str, values: FloatArray, at: float) -> Channel:
+    def channel(self, name: str, kind: Kind, unit: str, values: FloatArray, at: float) -> Channel:
         """Return a channel of this instrument."""
         return Channel(name, kind, unit, self.time, values, self._flags, at)
 

@@ -12,6 +12,7 @@ from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Flag, Window
 from tethertest.records.lines import Expectation
 from tethertest.records.response import NaturalFrequency
+from tethertest.units import Kind
 
 COUNT: Final = 2048
 RATE: Final = 30.0  #: [Hz]
@@ -87,14 +88,14 @@ def tension(values: FloatArray, flags: FloatArray | None = None) -> Channel:
     marks = np.zeros(COUNT, dtype=np.uint16)
     if flags is not None:
         marks[flags > 0.0] = Flag.MISSING
-    return Channel("tension", "tension", "N", TIME, values, marks)
+    return Channel("tension", Kind.TENSION, "N", TIME, values, marks)
 
 
 def motion(random: Random, frequency: float, turned: FloatArray = TIME) -> Channel:
     """Return the measured bottom motion of a crank without harmonics."""
     values = cosine(turned, frequency, 0.1, random.uniform(0.0, 2.0 * np.pi))
     values = values + 0.1 / MOTION_CLEARNESS * random.standard_normal(COUNT)
-    return Channel("heave", "displacement", "m", TIME, values, np.zeros(COUNT, dtype=np.uint16), at=0.0)
+    return Channel("heave", Kind.DISPLACEMENT, "m", TIME, values, np.zeros(COUNT, dtype=np.uint16), at=0.0)
 
 
 def some_drive(random: Random) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from reports.lost_gratings.cases import RATE, Case
 from tethertest.conditioning.gratings import assigned
 from tethertest.records.channel import Channel, Flag
+from tethertest.units import Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +34,7 @@ def judge(case: Case) -> Outcome:
         for number in range(case.columns.shape[1])
     ]
     logged = [
-        Channel(name, "wavelength", "m", time, values, np.zeros(time.size, np.uint16))
+        Channel(name, Kind.WAVELENGTH, "m", time, values, np.zeros(time.size, np.uint16))
         for name, values in zip(names, case.columns.T, strict=True)
     ]
     found = {channel.name: channel for channel in assigned(logged, case.rig)[0]}

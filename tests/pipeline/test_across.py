@@ -19,10 +19,12 @@ from tethertest.pipeline.across import analyze_across, gathered
 from tethertest.pipeline.analysis_options import Options
 from tethertest.pipeline.schemas import schema_of
 from tethertest.records.across import Across, Direction, RunChannel, RunPart, StepVerdict
+from tethertest.records.analysis import MEASURED
 from tethertest.records.channel import Window
 from tethertest.records.lines import ChannelLines, Line, LineVerdict
 from tethertest.render.across import across_summary, write_across
 from tethertest.render.as_json import as_json
+from tethertest.units import Kind
 
 CAMPAIGN = Path(__file__).parents[2] / "datasets" / "rig3m"
 FREQUENCIES = np.round(np.arange(0.1, 0.5, 0.02), 3)
@@ -47,7 +49,7 @@ def part(number: int, frequency: float, first: float, half: float, **other: obje
         0,
     )
     spectrum = np.linspace(0.0, 8.0 * frequency, 200), np.full(200, 0.01)
-    channel = RunChannel("tension_top", "tension", "N", "measured", 1.0, lines, "", "", first, 0.0, spectrum)
+    channel = RunChannel("tension_top", Kind.TENSION, "N", MEASURED, 1.0, lines, "", "", first, 0.0, spectrum)
     stated = {
         "date": "2026-09-05T09:00:00+08:00",
         "time": float(number),

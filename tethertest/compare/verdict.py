@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from tethertest.records.channel import Finding
+from tethertest.records.channel import Finding, Severity
 from tethertest.records.comparison import Comparison, Metric, Verdict
 
 #: a limited channel with more of its window unusable than this decides nothing
 UNUSABLE_LIMIT: Final = 0.05
-#: severity of a finding after which nothing can be decided
-FATAL: Final = "fatal"
-#: severity of a finding that is told beside the verdict
-WARNING: Final = "warning"
 
 
 def overall(
@@ -36,13 +32,13 @@ def overall(
         Undecided where the data cannot carry a verdict (fatal finding, too many unusable samples); else fail
         if a limited metric fails, undecided if one is undecided or none has a limit, else pass.
     """
-    doubts = [f"{item.subject}: {item.text}" for item in findings if item.severity == FATAL]
+    doubts = [f"{item.subject}: {item.text}" for item in findings if item.severity == Severity.FATAL]
     doubts += [
         f"{channel}: {share:.1%} of the window cannot be used, at most {UNUSABLE_LIMIT:.0%} may"
         for channel, share in unusable.items()
         if share > UNUSABLE_LIMIT
     ]
-    told = tuple(f"{item.subject}: {item.text}" for item in findings if item.severity == WARNING)
+    told = tuple(f"{item.subject}: {item.text}" for item in findings if item.severity == Severity.WARNING)
     failed = [item for item in metrics if item.verdict is Verdict.FAIL]
     open_ones = [item for item in metrics if item.verdict is Verdict.UNDECIDED]
     passed = [item for item in metrics if item.verdict is Verdict.PASS]
@@ -62,7 +58,7 @@ def overall(
 
 def without_drive(metrics: Sequence[Metric], findings: Sequence[Finding], reason: str) -> Comparison:
     """Return the undecided verdict of a run in which nothing could be compared, the reason said once."""
-    fatal = (f"{item.subject}: {item.text}" for item in findings if item.severity == FATAL)
+    fatal = (f"{item.subject}: {item.text}" for item in findings if item.severity == Severity.FATAL)
     return Comparison(tuple(metrics), Verdict.UNDECIDED, (reason, *fatal))
 
 

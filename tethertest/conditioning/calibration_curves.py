@@ -9,6 +9,7 @@ import numpy as np
 from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.calibration import Calibration, CalibrationData, CalibrationPoint
+from tethertest.records.channel import Severity
 
 #: chance of calling a good calibration bad, in each test
 SIGNIFICANCE = 0.01
@@ -38,7 +39,7 @@ class Curve:
     hysteresis: float  #: largest difference between unloading and loading [N]
     repeatability: float  #: standard deviation at the same load, taken the same way [N]
     words: str
-    problems: tuple[tuple[str, str, str], ...] = ()  #: kind, text and severity of each finding
+    problems: tuple[tuple[str, str, Severity], ...] = ()  #: kind, text and severity of each finding
 
     @property
     def offset_uncertainty(self) -> float:
@@ -142,7 +143,7 @@ def _polynomial(
     freedom = z.size - order - 1
     squares = float(np.sum((root * residual) ** 2))
     rounding = (ROUNDING * float(np.ptp(force))) ** 2
-    problems: list[tuple[str, str, str]] = []
+    problems: list[tuple[str, str, Severity]] = []
     scatter = float(np.sqrt(np.sum(residual**2) / freedom)) if freedom else 0.0
     if stated is None:
         # few residuals know their own size badly: the interval of Student's t keeps its 95 %
@@ -153,7 +154,7 @@ def _polynomial(
         if freedom and float(chi2.sf(squares, freedom)) < SIGNIFICANCE:
             ratio = np.sqrt(squares / freedom)
             text = f"the residuals of its calibration are {ratio:.3g} times their stated uncertainties"
-            problems.append(("calibration_residuals", text, "warning"))
+            problems.append(("calibration_residuals", text, Severity.WARNING))
     if freedom and squares > rounding * float(np.max(root)) ** 2:
         problems += _outlier(data, design * root[:, None], residual * root, squares, freedom)
         problems += _misfit(data, design, force, root, squares, freedom)
@@ -199,7 +200,7 @@ def _least_squares(
 
 def _outlier(
     data: CalibrationData, design: FloatArray, weighted: FloatArray, squares: float, freedom: int
-) -> list[tuple[str, str, str]]:
+) -> list[tuple[str, str, Severity]]:
     """Name a pair whose deleted studentised residual is no chance (Bonferroni over all pairs)."""
     from scipy.stats import t
 
@@ -218,7 +219,7 @@ def _outlier(
         f"{point.place} of its calibration ({point.measured:.7g}, {point.force:.6g} N) is an outlier: "
         f"{student[worst]:.1f} standard deviations off the other pairs; it was used, so look at it"
     )
-    return [("calibration_outlier", text, "warning")]
+    return [("calibration_outlier", text, Severity.WARNING)]
 
 
 def _misfit(
@@ -228,7 +229,7 @@ def _misfit(
     root: FloatArray,
     squares: float,
     freedom: int,
-) -> list[tuple[str, str, str]]:
+) -> list[tuple[str, str, Severity]]:
     """Name residuals that one order more would explain (F test)."""
     from scipy.stats import f
 
@@ -244,7 +245,7 @@ def _misfit(
         f"the residuals of its calibration ({data.source}) follow a curve of order {order + 1}, and order "
         f"{order} was asked for: what is left reaches the uncertainty"
     )
-    return [("calibration_misfit", text, "warning")]
+    return [("calibration_misfit", text, Severity.WARNING)]
 
 
 def _hysteresis(force: FloatArray, residual: FloatArray) -> float:
@@ -284,11 +285,11 @@ def _stated(points: tuple[CalibrationPoint, ...]) -> FloatArray | None:
     return np.array(spreads) if len(spreads) == len(points) else None
 
 
-def _unknown(unknown: bool, data: CalibrationData) -> tuple[tuple[str, str, str], ...]:
+def _unknown(unknown: bool, data: CalibrationData) -> tuple[tuple[str, str, Severity], ...]:
     if not unknown:
         return ()
     text = f"the calibration of {data.source} states no uncertainty and has no residuals: it counts as exact"
-    return (("calibration_uncertainty", text, "note"),)
+    return (("calibration_uncertainty", text, Severity.NOTE),)
 
 
 def _derivative(coefficients: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ from tethertest.conditioning.correlation import SEARCH, scanned
 from tethertest.conditioning.guide import Guide
 from tethertest.conditioning.rivals import Rival, chosen
 from tethertest.conditioning.straight import Delay, delays, worst
-from tethertest.records.channel import Channel, ClockFit, Finding
+from tethertest.records.channel import Channel, ClockFit, Finding, Severity
 from tethertest.records.run import Run
 
 #: offsets that are fitted beside the best one
@@ -62,11 +62,11 @@ def fitted_clock(
         fit = ClockFit(
             clock, guide.reference_clock, by_hand.value, error, 0.0, believable / np.sqrt(3.0), text
         )
-        return fit, (Finding(clock, "clock_override", text, "note"),)
+        return fit, (Finding(clock, "clock_override", text, Severity.NOTE),)
     refused: list[tuple[ClockFit, tuple[Finding, ...]]] = []
     for comparable in comparables(channels, reference, run, guide):
         fit, findings = _compared(clock, comparable, guide, believable)
-        if not any(item.severity == "fatal" for item in findings):
+        if not any(item.severity == Severity.FATAL for item in findings):
             return fit, findings
         refused.append((fit, findings))
     return refused[0]
@@ -131,7 +131,7 @@ def _unplaced(
         "not aligned: taken by its own stamps",
         (text,),
     )
-    return fit, (Finding(clock, "clock_not_aligned", f"{text}; {_remedy(clock)}", "fatal"),)
+    return fit, (Finding(clock, "clock_not_aligned", f"{text}; {_remedy(clock)}", Severity.FATAL),)
 
 
 def _remedy(clock: str) -> str:
@@ -147,17 +147,17 @@ def _judged(
     found: list[Finding] = []
     if abs(fit.offset) > SEARCH:
         text = f"offset {fit.offset:+.3f} s: clocks of one run are believed to differ by {SEARCH:g} s at most"
-        found.append(Finding(clock, "clock_ambiguous", f"{text}; {_remedy(clock)}", "fatal"))
+        found.append(Finding(clock, "clock_ambiguous", f"{text}; {_remedy(clock)}", Severity.FATAL))
     if rivals:
         others = ", ".join(f"{item.offset:+.3f} s" for item in rivals[:3])
         fits = f"offset {fit.offset:+.3f} s fits no better than {others}"
         text = f"{fits}: no tap or transient chooses the cycle; {_remedy(clock)}"
-        found.append(Finding(clock, "clock_ambiguous", text, "fatal"))
+        found.append(Finding(clock, "clock_ambiguous", text, Severity.FATAL))
     if left is not None and abs(left.delay) > BREAK:
         text = f"the clock does not run straight: {1e3 * left.delay:+.3g} ms off near {left.time:.1f} s"
-        found.append(Finding(clock, "clock_inconsistent", text, "fatal"))
+        found.append(Finding(clock, "clock_inconsistent", text, Severity.FATAL))
     if abs(fit.drift) > believable + DRIFT_SIGMAS * fit.drift_error:
         limit = f"{1e6 * believable:.0f} ppm"
         text = f"drift {1e6 * fit.drift:+.0f} ppm, more than the {limit} that its instrument may have"
-        found.append(Finding(clock, "clock_drift", text, "fatal"))
+        found.append(Finding(clock, "clock_drift", text, Severity.FATAL))
     return tuple(found)

@@ -24,7 +24,7 @@ from tethertest.conditioning.shared_clocks import shared_clock_findings
 from tethertest.conditioning.spikes import with_spikes_flagged
 from tethertest.conditioning.steps import with_steps_flagged
 from tethertest.errors import DataError
-from tethertest.records.channel import Channel, ClockFit, ConditionedRun, Finding, RawLog
+from tethertest.records.channel import Channel, ClockFit, ConditionedRun, Finding, RawLog, Severity
 from tethertest.records.rig import sensor_noise
 from tethertest.records.run import Log, Run
 
@@ -93,7 +93,7 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
             mapped_finding(item, fit) for log in opened if log.clock == name for item in log.findings
         ]
         findings += problems
-        if not any(item.severity == "fatal" for item in problems):
+        if not any(item.severity == Severity.FATAL for item in problems):
             findings += shared_clock_findings(fit, believed[name], reference, run, guide)
         channels += [mapped(channel, fit) for channel in by_clock[name]]
     windows = windows_of(run, channels, guide.drive_frequency)

@@ -9,7 +9,7 @@ import numpy as np
 
 from tethertest.conditioning.inertia import Inertia
 from tethertest.records.arrays import FloatArray
-from tethertest.records.channel import Channel, Finding, Window
+from tethertest.records.channel import Channel, Finding, Severity, Window
 from tethertest.records.rig import Rig
 
 #: both are compared as means over this time [s]: noise averages out and clocks need not agree to a sample
@@ -162,7 +162,7 @@ def _of_gratings(found: Sequence[Gain], rig: Rig, doubt: str) -> list[Finding]:
     )
     text = f"axial stiffness times strain over tension, {COVERAGE:g} standard uncertainties: {listed}"
     text += f"; {doubt}" if doubt else ""
-    findings = [Finding("cross-check", "strain_over_tension", text, "note")]
+    findings = [Finding("cross-check", "strain_over_tension", text, Severity.NOTE)]
     wrong = [item for item in best.values() if not item.agrees]
     cell = _wrong_cell(found)
     if cell is not None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray
-from tethertest.records.channel import Channel, Finding, Flag
+from tethertest.records.channel import Channel, Finding, Flag, Severity
 from tethertest.records.rig import Rig, Sensor, sensor_range
 from tethertest.records.run import Run
 
@@ -75,7 +75,7 @@ def with_excludes(channels: Sequence[Channel], run: Run) -> tuple[tuple[Channel,
             logged = f"{channel.time[0]:.4g} s to {channel.time[-1]:.4g} s"
             message = f"[[exclude]] {item.channel!r} from {span}: it was logged from {logged}"
             raise DataError(message, "correct the span in run.toml", path=run.folder / "run.toml")
-        findings.append(Finding(item.channel, "excluded", text, "note", (item.span,), count))
+        findings.append(Finding(item.channel, "excluded", text, Severity.NOTE, (item.span,), count))
     return tuple(result.values()), tuple(findings)
 
 

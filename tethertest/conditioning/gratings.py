@@ -10,7 +10,7 @@ import numpy as np
 
 from tethertest.conditioning.mapping import is_grating
 from tethertest.conditioning.peak_owners import NONE, Owners, owners
-from tethertest.records.channel import Channel, Finding, Flag
+from tethertest.records.channel import Channel, Finding, Flag, Severity
 from tethertest.records.rig import Rig, Sensor
 
 #: a grating without a capture range believes peaks this far from its expected wavelength [m]
@@ -129,4 +129,4 @@ def _doubts(channel: Channel, sensor: Sensor, doubtful: np.ndarray) -> tuple[Fin
         "left empty; gratings farther apart or a lower capture would tell them apart"
     )
     span = ((float(times[0]), float(times[-1])),)
-    return (Finding(sensor.name, "peaks_in_doubt", text, "note", span, count),)
+    return (Finding(sensor.name, "peaks_in_doubt", text, Severity.NOTE, span, count),)

@@ -10,8 +10,9 @@ import numpy as np
 
 from tethertest.conditioning.calibration_curves import Curve, curve_of
 from tethertest.errors import DataError
-from tethertest.records.channel import Channel, Finding, Flag
+from tethertest.records.channel import Channel, Finding, Flag, Severity
 from tethertest.records.rig import Rig, Sensor
+from tethertest.units import Kind
 
 #: units in which people know a load cell's output
 _SHOWN = {"ratio": (1e3, "mV/V"), "voltage": (1e3, "mV"), "count": (1.0, "counts")}
@@ -48,7 +49,7 @@ def calibrated(
     findings: tuple[Finding, ...] = ()
     if sensor.due is not None and sensor.due < date:
         text = f"calibration was due on {sensor.due.isoformat()}"
-        findings = (Finding(sensor.name, "calibration_due", text, "note"),)
+        findings = (Finding(sensor.name, "calibration_due", text, Severity.NOTE),)
     if sensor.calibration is not None and sensor.name in rig.calibrations:
         changed, found = _by_curve(channel, sensor, rig)
     else:
@@ -68,7 +69,7 @@ def _by_sensitivity(channel: Channel, sensor: Sensor, rig: Rig) -> Channel:
     words += f"{sensor.rated:g} N at {1e3 * sensor.sensitivity:.7g} mV/V"
     step = f"load cell: {words} (relative uncertainty {relative:.2g})"
     changed = channel.with_values(factor * channel.values, step, unit="N")
-    return replace(changed, kind="tension", uncertainty=relative)
+    return replace(changed, kind=Kind.TENSION, uncertainty=relative)
 
 
 def _by_curve(channel: Channel, sensor: Sensor, rig: Rig) -> tuple[Channel, tuple[Finding, ...]]:
@@ -84,7 +85,7 @@ def _by_curve(channel: Channel, sensor: Sensor, rig: Rig) -> tuple[Channel, tupl
     findings = tuple(Finding(sensor.name, *problem) for problem in curve.problems)
     if channel.kind == "tension":
         text = f"the log has {channel.unit}: the logger's own calibration is kept, not {data.source}"
-        finding = Finding(sensor.name, "calibration_by_logger", text, "note")
+        finding = Finding(sensor.name, "calibration_by_logger", text, Severity.NOTE)
         changed = channel.with_step(f"load cell: {text}; its uncertainty is taken over")
         return _with_uncertainty(changed, curve, curve.relative), (*findings, finding)
     factor, converted, words = _conversion(channel, curve.kind, sensor, rig)
@@ -96,7 +97,7 @@ def _by_curve(channel: Channel, sensor: Sensor, rig: Rig) -> tuple[Channel, tupl
         f"load cell: {words}{data.source}: {curve.words}; calibrated from {low:.6g} to {high:.6g} {unit}, "
         f"relative uncertainty of the scale {relative:.2g}, of a reading {curve.offset_uncertainty:.2g} N"
     )
-    changed = replace(channel.with_values(curve.force(output), step, unit="N"), kind="tension")
+    changed = replace(channel.with_values(curve.force(output), step, unit="N"), kind=Kind.TENSION)
     beyond = np.isfinite(output) & curve.beyond(output)
     if beyond.any():
         text = (

@@ -14,7 +14,7 @@ from tethertest.conditioning.mapping import Pairing, is_grating, paired
 from tethertest.conditioning.stamps import Stamps, audited
 from tethertest.conditioning.starts import start_after
 from tethertest.records.arrays import FloatArray
-from tethertest.records.channel import Channel, Finding, Flag, RawLog, Source
+from tethertest.records.channel import Channel, Finding, Flag, RawLog, Severity, Source
 from tethertest.records.run import Log, Run
 
 Timed = TypeVar("Timed")
@@ -48,7 +48,11 @@ def as_logged(raw: RawLog, entry: Log, run: Run) -> LoggedChannels:
     """
     pairings, findings = paired(raw, entry, run.rig)
     start, start_findings = start_after(raw, entry, run.file.date)
-    found = [*findings, *start_findings, *(Finding(entry.clock, "log", text, "note") for text in raw.remarks)]
+    found = [
+        *findings,
+        *start_findings,
+        *(Finding(entry.clock, "log", text, Severity.NOTE) for text in raw.remarks),
+    ]
     channels: list[Channel] = []
     for group in with_same_times(pairings, lambda pairing: pairing.raw.time):
         stamps = audited(group[0].raw.time + start, raw, entry.clock)

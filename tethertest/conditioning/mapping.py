@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tethertest.errors import DataError, QuantityError
-from tethertest.records.channel import Finding, RawChannel, RawLog
+from tethertest.records.channel import Finding, RawChannel, RawLog, Severity
 from tethertest.records.rig import Rig, Sensor
 from tethertest.records.run import Log
 from tethertest.units import UnitScale, channel_scale
@@ -124,4 +124,4 @@ def _ignored(channels: list[RawChannel], raw: RawLog) -> tuple[Finding, ...]:
     if not channels:
         return ()
     names = ", ".join(channel.name for channel in channels)
-    return (Finding(raw.path.name, "ignored", f"{names}: no sensor of the rig, not used", "note"),)
+    return (Finding(raw.path.name, "ignored", f"{names}: no sensor of the rig, not used", Severity.NOTE),)

@@ -8,7 +8,7 @@ import numpy as np
 
 from tethertest.conditioning.flags import sensor_of
 from tethertest.errors import DataError
-from tethertest.records.channel import Channel, Finding, Flag, Window
+from tethertest.records.channel import Channel, Finding, Flag, Severity, Window
 from tethertest.records.rig import Rig, sensor_range
 
 #: a log is at most so many times faster or slower than its instrument: milliseconds read as seconds are not
@@ -125,5 +125,5 @@ def hole_findings(
             text = (
                 f"the replay needs its samples from {hole}, and none is usable; set [windows] steady beside"
             )
-            found.append(Finding(channel.name, "motion_hole", text, "fatal", ((start, stop),)))
+            found.append(Finding(channel.name, "motion_hole", text, Severity.FATAL, ((start, stop),)))
     return found

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from scipy.ndimage import median_filter
 
-from tethertest.records.channel import Channel, Finding
+from tethertest.records.channel import Channel, Finding, Severity
 from tethertest.records.rig import Rig
 from tethertest.signal.filters import filled
 
@@ -52,5 +52,5 @@ def pushing_findings(channels: Sequence[Channel], rig: Rig) -> tuple[Finding, ..
         )
         when = tuple((float(channel.time[a]), float(channel.time[b - 1])) for a, b in spans)
         count = sum(b - a for a, b in spans)
-        found.append(Finding(channel.name, "negative_tension", text, "fatal", when, count))
+        found.append(Finding(channel.name, "negative_tension", text, Severity.FATAL, when, count))
     return tuple(found)

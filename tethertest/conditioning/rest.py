@@ -9,7 +9,7 @@ import numpy as np
 
 from tethertest.conditioning.stated import STANDS_STILL, half_range
 from tethertest.errors import DataError
-from tethertest.records.channel import Channel, Finding, Window
+from tethertest.records.channel import Channel, Finding, Severity, Window
 from tethertest.records.run import Run, Span
 from tethertest.signal.settling import settled_from
 from tethertest.signal.windows import FEWEST_CYCLES, SHORTEST_REST, Steady, find_rest, find_steady
@@ -102,7 +102,7 @@ def _check_by_hand(run: Run, channels: Sequence[Channel], motion: Channel) -> tu
         moved = half_range(motion.between(*span)) if motion.kind == "displacement" else None
         if name != "steady" and moved is not None and moved > STANDS_STILL:
             text = f"{words} is no rest: {motion.name} moves by +/-{moved:.3g} m in it; {remedy}"
-            findings.append(Finding("run.toml", "no_rest", text, "fatal"))
+            findings.append(Finding("run.toml", "no_rest", text, Severity.FATAL))
     return tuple(findings)
 
 

@@ -19,7 +19,7 @@ from tethertest.conditioning.strain import (
     temperature_of,
 )
 from tethertest.conditioning.tare import DEFAULT_RATED, STRAIN_DRIFT, TENSION_DRIFT, Level, rest_level, zeroed
-from tethertest.records.channel import Channel, Finding
+from tethertest.records.channel import Channel, Finding, Severity
 from tethertest.records.rig import Rig, Sensor
 from tethertest.signal.filters import filled, low_passed
 from tethertest.signal.noise import white_noise
@@ -49,7 +49,7 @@ def finished(
     findings: list[Finding] = []
     if _moved(channels, levels):
         text = "the base stands elsewhere after the run: only the rest before it is used for zeros"
-        findings.append(Finding("rest_after", "base_moved", text, "note"))
+        findings.append(Finding("rest_after", "base_moved", text, Severity.NOTE))
         levels = {name: (before, None if before else after) for name, (before, after) in levels.items()}
     temperatures = {
         channel.name: _temperature(channel, sensor_of(rig, channel), levels[channel.name])
@@ -145,7 +145,7 @@ def _uncompensated(sensor: Sensor) -> tuple[Finding, ...]:
             f"{why}: the strain is uncertain by {open_:.3g} microstrain (standard) for the stated "
             f"+/-{sensor.temperature_change:g} K"
         )
-        return (Finding(sensor.name, "not_compensated", text, "note"),)
+        return (Finding(sensor.name, "not_compensated", text, Severity.NOTE),)
     text = (
         f"{why}: strain is not compensated, a kelvin reads as "
         f"{1e6 * apparent_strain(sensor, 1.0):.3g} microstrain; state temperature_change in the rig file"

@@ -8,7 +8,7 @@ import numpy as np
 
 from tethertest.conditioning.clocks import fitted_clock
 from tethertest.conditioning.guide import Guide
-from tethertest.records.channel import Channel, ClockFit, Finding
+from tethertest.records.channel import Channel, ClockFit, Finding, Severity
 from tethertest.records.run import Run
 
 #: files of one clock may lie apart by this many standard errors, and by this much [s]
@@ -49,7 +49,7 @@ def shared_clock_findings(
         if any(channel.kind == "tension" for channel in own) or not any(c.kind in PLACED for c in own):
             continue
         found, problems = fitted_clock(fit.clock, own, reference, run, guide)
-        if any(item.severity == "fatal" for item in problems):
+        if any(item.severity == Severity.FATAL for item in problems):
             continue
         middle = float(np.mean([own[0].time[0], own[0].time[-1]]))
         apart = float(found.to_reference(np.array(middle)) - fit.to_reference(np.array(middle)))
@@ -60,5 +60,5 @@ def shared_clock_findings(
                 f"{file} is not on the clock of {others}: {found.method} puts it {-apart:+.4g} s "
                 f"(+/- {error:.1g}) off; give each instrument a clock of its own in run.toml"
             )
-            findings.append(Finding(fit.clock, "clock_shared", text, "fatal"))
+            findings.append(Finding(fit.clock, "clock_shared", text, Severity.FATAL))
     return tuple(findings)

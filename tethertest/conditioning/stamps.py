@@ -9,7 +9,7 @@ import numpy as np
 from tethertest.conditioning.stamp_steps import GAP_STEPS, Quantised, Steps, even_rows, steps_of
 from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray, FlagArray, FloatArray
-from tethertest.records.channel import Finding, Flag, RawLog
+from tethertest.records.channel import Finding, Flag, RawLog, Severity
 
 #: a step back by more than this fraction of the median step is an unsorted log, by less it is jitter
 BACKWARD_FRACTION = 0.5
@@ -78,7 +78,7 @@ def audited(time: FloatArray, raw: RawLog, clock: str) -> Stamps:
         if rebuilt is None:
             rebuilt = _spread(time)
             text = f"{words}, and rows are missing: stamps that repeat are spread evenly, true to {words}"
-            severity = "warning"
+            severity = Severity.WARNING
         else:
             away = float(np.max(np.abs(rebuilt - time)))
             text, severity = rebuilt_words(words, away, seen.quantised)
@@ -138,7 +138,7 @@ def irregularity(
     return "jitter", f"jitter {1e3 * jitter:.3g} ms"
 
 
-def rebuilt_words(words: str, away: float, quantised: Quantised | None) -> tuple[str, str]:
+def rebuilt_words(words: str, away: float, quantised: Quantised | None) -> tuple[str, Severity]:
     """Return what is said of rebuilt time, and how severe it is.
 
     Parameters
@@ -151,8 +151,8 @@ def rebuilt_words(words: str, away: float, quantised: Quantised | None) -> tuple
     """
     text = f"{words}: time rebuilt from row numbers, at most {1e3 * away:.3g} ms from the stamps"
     if quantised is None or not quantised.pattern:
-        return text, "note"
-    return f"{text}; {look_the_same(quantised)}: export the log with finer stamps to tell", "warning"
+        return text, Severity.NOTE
+    return f"{text}; {look_the_same(quantised)}: export the log with finer stamps to tell", Severity.WARNING
 
 
 def look_the_same(quantised: Quantised) -> str:

@@ -6,7 +6,7 @@ import datetime as dt
 from zoneinfo import ZoneInfo
 
 from tethertest.errors import DataError
-from tethertest.records.channel import Finding, RawLog
+from tethertest.records.channel import Finding, RawLog, Severity
 from tethertest.records.run import Log
 
 #: logs of a run start this close to its date: the date is typed by hand, to the minute [s]
@@ -43,7 +43,7 @@ def start_after(raw: RawLog, entry: Log, date: dt.datetime) -> tuple[float, tupl
     """
     if raw.start is None:
         text = "the log has no date: its first sample is taken at the run's date"
-        return 0.0, (Finding(entry.clock, "no_start", f"{raw.path.name}: {text}", "note"),)
+        return 0.0, (Finding(entry.clock, "no_start", f"{raw.path.name}: {text}", Severity.NOTE),)
     start = _aware(raw.start, entry, date)
     seconds = (start - date).total_seconds()
     if abs(seconds) <= START_TOLERANCE:

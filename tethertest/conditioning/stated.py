@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from tethertest.records.channel import Channel, ConditionedRun, Finding, Window
+from tethertest.records.channel import Channel, ConditionedRun, Finding, Severity, Window
 from tethertest.records.lines import DriveFit
 from tethertest.records.run import Run
 
@@ -70,7 +70,7 @@ def moves_otherwise(run: Run, heave: Channel | None, steady: Window | None) -> s
 def _findings(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> Iterator[Finding]:
     if run.file.purpose == "calibration":
         text = "its purpose is calibration: a run that identified the rig cannot validate it"
-        yield Finding("run.toml", CALIBRATION, text, "fatal")
+        yield Finding("run.toml", CALIBRATION, text, Severity.FATAL)
     yield from _of_drive(run, measured, drive)
 
 
@@ -81,7 +81,7 @@ def _of_drive(run: Run, measured: ConditionedRun, drive: DriveFit | None) -> Ite
         moved = None if heave is None else half_range(heave)
         if heave is not None and moved is not None and moved > STANDS_STILL:
             text = f'[drive] kind is "none", but {heave.name} moves by +/-{moved:.3g} m; correct [drive]'
-            yield Finding("run.toml", NOT_STATED, text, "fatal")
+            yield Finding("run.toml", NOT_STATED, text, Severity.FATAL)
         return
     if drive is not None and stated.frequency is not None:
         error = drive.frequency / stated.frequency - 1.0

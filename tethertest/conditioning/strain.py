@@ -11,6 +11,7 @@ from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel
 from tethertest.records.rig import Rig, Sensor
 from tethertest.signal.filters import filled, low_passed
+from tethertest.units import Kind
 
 #: the temperature of cable and air changes slowly: what is faster in its grating is noise [Hz]
 TEMPERATURE_CUTOFF = 0.05
@@ -53,7 +54,7 @@ def temperature_of(channel: Channel, sensor: Sensor, rest: float) -> Channel:
     logarithm = channel.with_values(change)
     smooth = low_passed(filled(logarithm), channel.rate, TEMPERATURE_CUTOFF)
     values = np.where(channel.usable, smooth, np.nan)
-    return replace(logarithm.with_values(values, step, unit="K"), kind="temperature")
+    return replace(logarithm.with_values(values, step, unit="K"), kind=Kind.TEMPERATURE)
 
 
 def strain_of(
@@ -117,7 +118,7 @@ def strain_of(
         unknown = abs(apparent_strain(sensor, reach)) * RECTANGLE
         step += f"; not compensated, {1e6 * unknown:.2g} microstrain open for +/-{reach:g} K"
     strained = channel.with_values(total, step, unit="1")
-    return replace(strained, kind="strain", uncertainty=relative, offset_uncertainty=unknown)
+    return replace(strained, kind=Kind.STRAIN, uncertainty=relative, offset_uncertainty=unknown)
 
 
 def apparent_strain(sensor: Sensor, change: float) -> float:

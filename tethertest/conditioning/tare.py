@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tethertest.records.channel import Channel, Finding, Flag, Window
+from tethertest.records.channel import Channel, Finding, Flag, Severity, Window
 from tethertest.signal.noise import MAD_TO_SIGMA
 
 #: the level at rest is the median of means over this time: taps and ringing above 10 Hz average out [s]
@@ -84,7 +84,7 @@ def zeroed(
         text = f"no usable sample at rest: its zero is unknown, the record's median is set to {expected:g}"
         value = float(np.median(channel.values[channel.usable])) if channel.usable.any() else expected
         # a grating informs; without the zero of a load cell or an encoder nothing can be decided
-        severity = "warning" if channel.kind == "strain" else "fatal"
+        severity = Severity.WARNING if channel.kind == "strain" else Severity.FATAL
         finding = Finding(channel.name, "no_tare", text, severity)
         return channel.with_values(channel.values - value + expected, text), (finding,)
     drift = after.value - before.value if before is not None and after is not None else 0.0

@@ -17,7 +17,7 @@ from tethertest.pipeline.analyze import analyze_run
 from tethertest.pipeline.evaluation import Evaluation, open_evaluation
 from tethertest.records.across import RunChannel, RunPart
 from tethertest.records.analysis import ChannelAnalysis
-from tethertest.records.channel import Channel, Window
+from tethertest.records.channel import Channel, Severity, Window
 from tethertest.records.lines import ChannelLines
 from tethertest.records.run import Run
 from tethertest.spectra import spectrum
@@ -124,7 +124,7 @@ def _described(part: RunPart, run: Run) -> RunPart:
 
 def _analysed(part: RunPart, evaluation: Evaluation) -> RunPart:
     rest = evaluation.conditioned.rest_before
-    doubts = [finding for finding in evaluation.measured.findings if finding.severity != "note"]
+    doubts = [finding for finding in evaluation.measured.findings if finding.severity != Severity.NOTE]
     remarks = [f"{finding.subject}: {finding.text}" for finding in doubts if finding.kind != CALIBRATION]
     part = replace(part, remarks=tuple(remarks), from_rest=rest is not None)
     if evaluation.nominal is None:

@@ -17,7 +17,7 @@ from tethertest.pipeline.read_bare import settings_of_a_run
 from tethertest.pipeline.reservations import reservations
 from tethertest.pipeline.wave_findings import measured_waves, pattern_remarks, replayed_waves
 from tethertest.records.analysis import REPLAYED, Analysis, ChannelAnalysis
-from tethertest.records.channel import Channel, ConditionedRun, Window
+from tethertest.records.channel import Channel, ConditionedRun, Severity, Window
 from tethertest.records.response import Response
 from tethertest.records.scene import Scene
 from tethertest.spectra.cycles import count_cycles, extremes
@@ -96,7 +96,7 @@ def analyze_run(
     notes = [
         f"{finding.subject}: {finding.text}"
         for finding in measured.findings
-        if finding.severity != "note" and finding.kind != CALIBRATION
+        if finding.severity != Severity.NOTE and finding.kind != CALIBRATION
     ]
     found = [
         _with_measures(_searched(evaluation, channel, named=channel.name in channels), window)

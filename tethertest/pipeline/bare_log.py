@@ -17,7 +17,7 @@ from tethertest.pipeline.shown_flags import SHOWN, with_shown_flags, without_cod
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Flag, RawChannel, RawLog, Source
 from tethertest.signal.noise import white_noise
-from tethertest.units import UnitScale, channel_scale
+from tethertest.units import Kind, UnitScale, channel_scale
 
 #: a slower channel in a table of a faster one fills this share of its rows
 EVEN: Final = 0.95
@@ -176,7 +176,7 @@ def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
     try:
         scale = channel_scale(raw.unit)
     except QuantityError as error:
-        scale = UnitScale("other", raw.unit, 1.0)
+        scale = UnitScale(Kind.OTHER, raw.unit, 1.0)
         remarks.append(f"channel {raw.name!r}: {error.problem}; its values stay as written")
     written, coded = without_codes(raw.values)
     remarks += [f"channel {raw.name!r}: {text}; they are left out" for text in coded]

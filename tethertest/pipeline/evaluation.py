@@ -31,7 +31,7 @@ from tethertest.pipeline.stored import run_of
 from tethertest.pipeline.wave_findings import medium_of
 from tethertest.readers import load_run, read_log
 from tethertest.records.analysis import MEASURED, REPLAYED, ChannelAnalysis
-from tethertest.records.channel import Channel, ConditionedRun, Finding, RawLog, Window
+from tethertest.records.channel import Channel, ConditionedRun, Finding, RawLog, Side, Window
 from tethertest.records.comparison import Comparison
 from tethertest.records.lines import ChannelLines, DriveFit
 from tethertest.records.response import NaturalFrequency, Response
@@ -227,7 +227,7 @@ class Evaluation:
         searched = [c for c in self.conditioned.channels if c.kind in ANSWERS and self._covers(c)]
         return FALSE_LINES_OF_RUN / max(1, len(searched))
 
-    def found(self, channel: Channel, side: str = MEASURED) -> ChannelAnalysis:
+    def found(self, channel: Channel, side: Side = MEASURED) -> ChannelAnalysis:
         """Return the lines and events of one channel, or why there are none.
 
         Parameters
@@ -259,7 +259,7 @@ class Evaluation:
         first, *others = comparison.reasons
         return replace(comparison, reasons=(first, *self.response.warnings, *others))
 
-    def lines(self, channels: Sequence[Channel], side: str = MEASURED) -> tuple[ChannelLines, ...]:
+    def lines(self, channels: Sequence[Channel], side: Side = MEASURED) -> tuple[ChannelLines, ...]:
         """Return the lines of the motion and of the channels that the cable answers with."""
         chosen = [channel for channel in channels if channel is self.heave or channel.kind in ANSWERS]
         ordered = sorted(chosen, key=lambda channel: channel is not self.heave)

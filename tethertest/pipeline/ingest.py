@@ -17,7 +17,7 @@ from tethertest.pipeline.long_runs.ingest import Progress, Sources, ingest_long
 from tethertest.pipeline.long_runs.pieces import pieces_of
 from tethertest.pipeline.stored import store_header
 from tethertest.readers import read_log
-from tethertest.records.channel import Finding
+from tethertest.records.channel import Finding, Severity
 from tethertest.records.described import Doc
 from tethertest.records.run import Run
 from tethertest.store import is_store, write_store
@@ -38,7 +38,7 @@ class Ingested:
     path: Annotated[Path, Doc("of the run store")]
     size: Annotated[int, Doc("of the file [bytes]")]
     channels: Annotated[dict[str, int], Doc("name -> samples")]
-    findings: Annotated[dict[str, int], Doc("severity -> how many")]
+    findings: Annotated[dict[Severity, int], Doc("severity -> how many")]
 
 
 def default_store(folder: Path) -> Path:

@@ -12,7 +12,7 @@ from tethertest.errors import DataError
 from tethertest.records.analysis import MEASURED, REPLAYED, WaveFindings
 from tethertest.records.channel import Channel, ConditionedRun, Window
 from tethertest.records.events import Front, WaveSpeed
-from tethertest.records.lines import ChannelLines, DriveFit, Event, Expectation
+from tethertest.records.lines import ChannelLines, DriveFit, Event, EventKind, Expectation
 from tethertest.records.response import Response
 from tethertest.records.rig import Rig
 from tethertest.records.scene import Scene
@@ -22,6 +22,7 @@ from tethertest.spectra import find_lines
 from tethertest.spectra.arrivals import find_front
 from tethertest.spectra.wave_speed import wave_speed
 from tethertest.spectra.waves import Medium, Station, section_waves, separated_waves
+from tethertest.units import Kind
 
 #: the front of a knock is looked for from this long after a rest window's start [s]
 SETTLE: Final = 0.2
@@ -92,7 +93,9 @@ def measured_waves(
     medium = medium_of(scene, rig)
     fronts, speed, remarks = _knock(measured, medium, rig)
     slack = [
-        e for e in events if e.kind == "slack" and window and e.start < window.stop and e.stop > window.start
+        e
+        for e in events
+        if e.kind == EventKind.SLACK and window and e.start < window.stop and e.stop > window.start
     ]
     if slack:
         names = ", ".join(sorted({event.channel for event in slack}))
@@ -156,9 +159,9 @@ def replayed_waves(
     medium = medium_of(response.scene, rig)
     parts, remarks = [], []
     for number, at in enumerate(response.gauges):
-        tension = _series("tension", "N", response, start, response.tension[:, number], float(at))
+        tension = _series(Kind.TENSION, "N", response, start, response.tension[:, number], float(at))
         upwards = response.fields["velocity"][:, number, 2]
-        velocity = _series("velocity", "m/s", response, start, upwards, float(at))
+        velocity = _series(Kind.VELOCITY, "m/s", response, start, upwards, float(at))
         try:
             found = [find_lines(part, window, drive, Expectation()) for part in (tension, velocity)]
         except DataError as error:
@@ -256,7 +259,7 @@ def _station(channel: Channel, lines: ChannelLines, measured: ConditionedRun, sc
     return Station(channel.at or 0.0, lines, factor, channel.uncertainty, late)
 
 
-def _series(kind: str, unit: str, response: Response, start: float, values: object, at: float) -> Channel:
+def _series(kind: Kind, unit: str, response: Response, start: float, values: object, at: float) -> Channel:
     flags = np.zeros(response.time.size, dtype=np.uint16)
     series = np.asarray(values, dtype=np.float64)
     return Channel(f"{kind}@{at:g}", kind, unit, response.time + start, series, flags, at=at)

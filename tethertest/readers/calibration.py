@@ -13,7 +13,7 @@ from tethertest.readers.fingerprint import file_sha256
 from tethertest.readers.text.document import read_document
 from tethertest.records.calibration import CalibrationData, CalibrationPoint
 from tethertest.records.rig import Rig, Sensor
-from tethertest.units import UnitScale, channel_scale, parse_quantity
+from tethertest.units import Kind, UnitScale, channel_scale, parse_quantity
 
 #: what a load cell's output may be
 OUTPUT_KINDS: Final = ("ratio", "voltage", "count")
@@ -154,7 +154,7 @@ def _output_scale(unit: str) -> UnitScale:
 def _force_scale(unit: str, gravity: float) -> UnitScale:
     mass = MASSES.get(unit.strip().lower())
     if mass is not None:
-        return UnitScale("tension", "N", mass * gravity * BUOYANCY)
+        return UnitScale(Kind.TENSION, "N", mass * gravity * BUOYANCY)
     if not unit.strip():
         message = "real has no unit, expected N or kg"
         raise QuantityError(message, 'write it in the header, or units = ["mV/V", "N"] in the rig file')

@@ -9,7 +9,7 @@ import numpy as np
 from tethertest.errors import QuantityError
 from tethertest.records.channel import Flag, RawChannel, RawLog
 from tethertest.records.inspected import ChannelSeen
-from tethertest.units import UnitScale, channel_scale
+from tethertest.units import Kind, UnitScale, channel_scale
 
 
 def described_channels(log: RawLog) -> tuple[list[ChannelSeen], list[str]]:
@@ -72,4 +72,4 @@ def _scale(channel: RawChannel, remarks: list[str]) -> UnitScale:
         return channel_scale(channel.unit)
     except QuantityError as error:
         remarks.append(f"channel {channel.name!r}: {error.problem}")
-        return UnitScale("other", channel.unit, 1.0)
+        return UnitScale(Kind.OTHER, channel.unit, 1.0)

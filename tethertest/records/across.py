@@ -8,8 +8,10 @@ from enum import Enum
 from typing import Annotated
 
 from tethertest.records.arrays import FloatArray
+from tethertest.records.channel import Side
 from tethertest.records.described import Doc
 from tethertest.records.lines import ChannelLines, Line, LineVerdict
+from tethertest.units import Kind
 
 #: verdicts of what is no line of the response
 NOT_FOUND = frozenset({LineVerdict.NONE, LineVerdict.LEAKAGE, LineVerdict.MAINS, LineVerdict.ALIAS})
@@ -103,9 +105,9 @@ class Curve:
 
     group: int  #: place of its group
     channel: str
-    kind: str
+    kind: Kind
     unit: str
-    side: str  #: measured or replayed
+    side: Side
     order: str
     direction: Direction
     points: tuple[CurvePoint, ...]  #: in the order of time
@@ -142,7 +144,7 @@ class Loop:
     group: int
     channel: str
     unit: str
-    side: str
+    side: Side
     order: str
     hysteresis: Hysteresis
 
@@ -152,9 +154,9 @@ class RunChannel:
     """What a run contributes of one channel."""
 
     name: str
-    kind: str
+    kind: Kind
     unit: str
-    side: str
+    side: Side
     at: float | None  #: fraction of the cable's length from the bottom
     lines: ChannelLines | None
     no_lines: str  #: why there are none

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Final
 
 from tethertest.errors import DataError
-from tethertest.records.channel import Channel, Window
+from tethertest.records.channel import Channel, Side, Window
 from tethertest.records.described import Doc
 from tethertest.records.events import CycleCount, Extremes, Front, Snap, WaveSpeed
 from tethertest.records.frames import axes_or_new, table
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from tethertest.records.frames import Axes
 
-MEASURED, REPLAYED = "measured", "replayed"
+MEASURED, REPLAYED = Side.MEASURED, Side.REPLAYED
 #: columns of `Analysis.to_pandas`
 LINE_COLUMNS: Final = (
     "channel", "side", "order", "frequency_Hz", "amplitude", "lowest", "highest", "unit", "phase_rad",
@@ -42,7 +42,7 @@ class ChannelAnalysis:
     """One channel and all that was found in it."""
 
     channel: Channel
-    side: str  #: `MEASURED` or `REPLAYED`
+    side: Side
     lines: ChannelLines | None = None
     no_lines: str = ""  #: why there are none
     peaks: tuple[Peak, ...] = ()  #: of a blind search, where there is no drive to go by
@@ -136,6 +136,6 @@ class Analysis:
         used.legend()
         return used
 
-    def find(self, name: str, side: str = MEASURED) -> ChannelAnalysis | None:
+    def find(self, name: str, side: Side = MEASURED) -> ChannelAnalysis | None:
         """Return the channel of that name, if it was analysed."""
         return next((c for c in self.channels if c.channel.name == name and c.side == side), None)

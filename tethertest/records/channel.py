@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime as dt
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import IntFlag
+from enum import IntFlag, StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Protocol
 
@@ -16,6 +16,7 @@ from tethertest.records.arrays import BoolArray, FlagArray, FloatArray, frozen
 from tethertest.records.described import Doc
 from tethertest.records.frames import drawn, series, table
 from tethertest.signal.series import sampling_interval
+from tethertest.units import Kind
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -137,6 +138,13 @@ class RawLog:
         return "" if self.fingerprint is None else self.fingerprint.sha256
 
 
+class Side(StrEnum):
+    """Where a channel comes from; the value is the word in JSON."""
+
+    MEASURED = "measured"
+    REPLAYED = "replayed"
+
+
 @dataclass(frozen=True, slots=True)
 class Source:
     """Where a channel comes from and what was done to it."""
@@ -154,7 +162,7 @@ class Channel:
     """One time series in SI; measured and replayed channels share this type."""
 
     name: str  #: sensor of the rig, e.g. "tension_top"
-    kind: str  #: key of `tethertest.units.KINDS`
+    kind: Kind  #: made of its value too
     unit: str  #: SI unit
     time: FloatArray  #: (n,) [s], strictly increasing
     values: FloatArray  #: (n,), NaN where missing
@@ -166,6 +174,7 @@ class Channel:
     offset_uncertainty: float = 0.0  #: standard uncertainty of a constant added to all values, in `unit`
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "kind", Kind(self.kind))
         if not self.time.shape == self.values.shape == self.flags.shape or self.time.ndim != 1:
             message = (
                 f"channel {self.name!r}: time {self.time.shape}, values {self.values.shape} and flags "
@@ -271,6 +280,14 @@ class Window:
         return self.stop - self.start
 
 
+class Severity(StrEnum):
+    """How much a finding weighs; the value is the word in JSON."""
+
+    NOTE = "note"
+    WARNING = "warning"  #: told beside the verdict
+    FATAL = "fatal"  #: nothing can be decided
+
+
 @dataclass(frozen=True, slots=True)
 class Finding:
     """Something an audit saw that a person must know."""
@@ -278,9 +295,7 @@ class Finding:
     subject: Annotated[str, Doc("channel, clock or file")]
     kind: Annotated[str, Doc("name of a flag or of a fault, such as saturated or day_month_swapped")]
     text: Annotated[str, Doc("what was seen, in words")]
-    severity: Annotated[str, Doc("note; warning: told beside the verdict; fatal: nothing can be decided")] = (
-        "warning"
-    )
+    severity: Annotated[Severity, Doc("fatal: nothing can be decided")] = Severity.WARNING
     spans: Annotated[
         tuple[tuple[float, float], ...], Doc("where it was seen, start and stop on the run's clock [s]")
     ] = ()

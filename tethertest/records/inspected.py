@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from tethertest.records.described import Doc
+from tethertest.units import Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,7 +14,7 @@ class ChannelSeen:
     """One channel; numbers in SI."""
 
     name: Annotated[str, Doc("as the file has it; of a store, the sensor")]
-    kind: Annotated[str, Doc("what it measures, by its unit")]
+    kind: Annotated[Kind, Doc("what it measures, by its unit")]
     unit_as_written: Annotated[str, Doc("empty where the file says nothing")]
     unit: Annotated[str, Doc("of the numbers here")]
     n: Annotated[int, Doc("samples")]

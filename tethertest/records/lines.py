@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import Enum
+from enum import Enum, StrEnum
 from typing import Annotated
 
 from tethertest.records.arrays import FloatArray
@@ -85,11 +85,18 @@ class ChannelLines:
         return next((line for line in self.lines if line.order == order), None)
 
 
+class EventKind(StrEnum):
+    """What happened; the value is the word in JSON."""
+
+    SLACK = "slack"
+    SNAP = "snap"
+
+
 @dataclass(frozen=True, slots=True)
 class Event:
     """Something that happened at a time: slack interval, snap."""
 
-    kind: str  #: "slack" or "snap"
+    kind: EventKind
     channel: str
     start: float  #: [s]
     stop: float  #: [s]

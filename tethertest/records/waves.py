@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+from tethertest.records.channel import Side
+
 Interval = tuple[float, float]
 #: above this ratio of energies the standing part has more energy than the travelling one: the weaker wave and
 #: as much of the stronger make the standing part, 2 E2 against E1 - E2
@@ -44,7 +46,7 @@ class OrderWaves:
 class Waves:
     """Waves of one cable, seen at one section or by several sensors."""
 
-    source: str  #: "replayed" or "measured"
+    source: Side
     section: str  #: what they rest on
     at: float  #: fraction of the length from the bottom that the phases refer to
     orders: tuple[OrderWaves, ...]

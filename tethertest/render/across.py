@@ -19,11 +19,13 @@ from tethertest.records.across import (
     Step,
 )
 from tethertest.records.analysis import MEASURED
+from tethertest.records.channel import Side
 from tethertest.records.described import Doc
 from tethertest.render.as_json import json_text
 from tethertest.render.blocks import Picture
 from tethertest.render.published import Paths, Span, taken
 from tethertest.render.write import write_files
+from tethertest.units import Kind
 
 SUMMARY_NAME, PAGE_NAME = "across.json", "across.md"
 
@@ -33,8 +35,8 @@ class ChannelInRun:
     """What a run contributes of one channel."""
 
     name: Annotated[str, Doc("sensor of the rig")]
-    side: Annotated[str, Doc("measured or replayed")]
-    kind: Annotated[str, Doc("what it measures")]
+    side: Side
+    kind: Annotated[Kind, Doc("what it measures")]
     unit: Annotated[str, Doc("SI")]
     at: Annotated[float | None, Doc("fraction of the cable's length from the bottom")]
     lines_found: Annotated[int, Doc("how many lines are there")]
@@ -91,7 +93,7 @@ class CurveFound:
 
     group: Annotated[int, Doc("place of its group, from 0")]
     channel: Annotated[str, Doc("sensor of the rig")]
-    side: Annotated[str, Doc("measured or replayed")]
+    side: Side
     unit: Annotated[str, Doc("SI")]
     order: Annotated[str, Doc("multiple of the drive frequency")]
     direction: Annotated[Direction, Doc("how the setting moved from run to run")]
@@ -109,7 +111,7 @@ class LoopFound:
 
     group: Annotated[int, Doc("place of its group, from 0")]
     channel: Annotated[str, Doc("sensor of the rig")]
-    side: Annotated[str, Doc("measured or replayed")]
+    side: Side
     unit: Annotated[str, Doc("SI")]
     order: Annotated[str, Doc("multiple of the drive frequency")]
     hysteresis: Annotated[bool, Doc("whether up and down differ anywhere")]

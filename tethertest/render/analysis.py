@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from tethertest.records.analysis import Analysis, ChannelAnalysis, Peak, WaveFindings
+from tethertest.records.channel import Side
 from tethertest.records.described import Doc, MaybeNumber
 from tethertest.records.events import Cycle, CycleCount, Extremes, Front, Interval
 from tethertest.records.lines import DriveFit
 from tethertest.records.response import NaturalFrequency
 from tethertest.records.waves import LargestTension, OrderWaves, Waves
 from tethertest.render.published import EventFound, LineFound, Paths, Span, event_found, span_of, taken
+from tethertest.units import Kind
 
 #: load cycles listed, the largest first; their number and equivalent range cover all
 CYCLES_LISTED = 20
@@ -34,8 +36,8 @@ class ChannelAnalysed:
     """One channel and all that was found in it."""
 
     name: Annotated[str, Doc("sensor of the rig, or channel of the log")]
-    side: Annotated[str, Doc("measured or replayed")]
-    kind: Annotated[str, Doc("what it measures")]
+    side: Side
+    kind: Annotated[Kind, Doc("what it measures")]
     unit: Annotated[str, Doc("SI, where the log's unit is known")]
     lines: Annotated[tuple[LineFound, ...], Doc("by order")]
     no_lines: Annotated[str, Doc("why there are none", null="they were looked for")]
@@ -92,7 +94,7 @@ class OrderRefused:
 class WavesFound:
     """Waves of one cable, seen at one section or by several sensors."""
 
-    side: Annotated[str, Doc("measured or replayed")]
+    side: Side
     section: Annotated[str, Doc("what they rest on")]
     at: Annotated[float, Doc("fraction of the length from the bottom that the phases refer to")]
     orders: Annotated[tuple[OrderSeparated | OrderRefused, ...], Doc("by order")]

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, TypeVar
 from tethertest.records.channel import Window
 from tethertest.records.described import Doc
 from tethertest.records.events import Interval
-from tethertest.records.lines import Event, LineVerdict
+from tethertest.records.lines import Event, EventKind, LineVerdict
 
 Record = TypeVar("Record")
 Span = tuple[float, float]
@@ -51,7 +51,7 @@ class LineFound:
 class SlackFound:
     """A time without tension."""
 
-    kind: Annotated[Literal["slack"], Doc("no tension")]
+    kind: Annotated[Literal[EventKind.SLACK], Doc("no tension")]
     channel: Annotated[str, Doc("sensor of the rig")]
     start: Annotated[float, Doc("[s]")]
     stop: Annotated[float, Doc("[s]")]
@@ -63,7 +63,7 @@ class SlackFound:
 class SnapFound:
     """A re-tightening after slack; but for its peak, null where the record does not show it."""
 
-    kind: Annotated[Literal["snap"], Doc("a re-tightening")]
+    kind: Annotated[Literal[EventKind.SNAP], Doc("a re-tightening")]
     channel: Annotated[str, Doc("sensor of the rig")]
     start: Annotated[float, Doc("when tension leaves zero [s]")]
     stop: Annotated[float, Doc("when tension is at its peak [s]")]
@@ -86,8 +86,8 @@ EventFound = Annotated[SlackFound | SnapFound, Doc("in order of time")]
 
 def event_found(event: Event) -> SlackFound | SnapFound:
     """Return an event as every command prints it."""
-    if event.kind == "slack":
+    if event.kind == EventKind.SLACK:
         return taken(SlackFound, event, lowest=event.value)
     if event.snap is None:
-        return SnapFound("snap", event.channel, event.start, event.stop, event.value, event.value)
-    return taken(SnapFound, event.snap, kind="snap", stop=event.stop, value=event.value)
+        return SnapFound(EventKind.SNAP, event.channel, event.start, event.stop, event.value, event.value)
+    return taken(SnapFound, event.snap, kind=EventKind.SNAP, stop=event.stop, value=event.value)

@@ -15,6 +15,7 @@ from tethertest.records.response import Response
 from tethertest.records.run import Drive
 from tethertest.records.similarity import Similarity
 from tethertest.render.published import EventFound, LineFound, Paths, Span, event_found, span_of, taken
+from tethertest.units import Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +64,7 @@ class ChannelUsed:
     """One measured channel as it was compared."""
 
     name: Annotated[str, Doc("sensor of the rig")]
-    kind: Annotated[str, Doc("what it measures")]
+    kind: Annotated[Kind, Doc("what it measures")]
     unit: Annotated[str, Doc("SI")]
     at: Annotated[float | None, Doc("fraction of the cable's length from the bottom")]
     rate: Annotated[float, Doc("usual sampling rate [Hz]")]

@@ -15,6 +15,7 @@ from tethertest.records.run import Run
 from tethertest.replay.motion import bottom_motion
 from tethertest.replay.scene import run_scene
 from tethertest.solver import solve
+from tethertest.units import Kind
 
 #: mesh of the response that the clock alignment uses; taps need no more
 _ALIGNMENT_CELLS = 20
@@ -69,7 +70,7 @@ def expected_bottom_tension(run: Run) -> Callable[[Channel], Channel]:
         _check_finished(response)
         time = response.time + motion.start
         answered = _channel(heave, time, response.tension[:, 0], response.scheme)
-        return replace(answered, name="expected bottom tension", kind="tension", unit="N", at=0.0)
+        return replace(answered, name="expected bottom tension", kind=Kind.TENSION, unit="N", at=0.0)
 
     return answer
 

@@ -9,7 +9,7 @@ import numpy as np
 from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel
-from tethertest.records.lines import Event
+from tethertest.records.lines import Event, EventKind
 from tethertest.signal.filters import filled, low_passed
 
 #: standard uncertainty of a load cell's zero where the caller knows none [N]: tare and temperature drift of a
@@ -93,7 +93,7 @@ def find_events(
     for number, (start, stop) in enumerate(intervals):
         inside = (channel.time >= start) & (channel.time <= stop)
         lowest = float(smooth[inside].min()) if inside.any() else 0.0
-        events.append(Event("slack", channel.name, start, stop, lowest))
+        events.append(Event(EventKind.SLACK, channel.name, start, stop, lowest))
         following = intervals[number + 1][0] if number + 1 < len(intervals) else np.inf
         snap = _snap(channel, values, stop, stop + snap_span, following)
         if snap is not None:
@@ -104,7 +104,9 @@ def find_events(
 def slack_intervals(events: tuple[Event, ...], channel: str) -> tuple[tuple[float, float], ...]:
     """Return the slack intervals [s] of one channel among events."""
     return tuple(
-        (event.start, event.stop) for event in events if event.kind == "slack" and event.channel == channel
+        (event.start, event.stop)
+        for event in events
+        if event.kind == EventKind.SLACK and event.channel == channel
     )
 
 
@@ -152,4 +154,4 @@ def _snap(channel: Channel, values: FloatArray, start: float, stop: float, follo
     fallen = values[peak:end] < np.minimum(FALLEN * largest, largest - CLEAR * channel.noise)
     top = int(np.argmax(fallen)) if fallen.any() else fallen.size
     peak += int(np.nanargmax(values[peak : peak + top]))
-    return Event("snap", channel.name, start, float(channel.time[peak]), float(values[peak]))
+    return Event(EventKind.SNAP, channel.name, start, float(channel.time[peak]), float(values[peak]))

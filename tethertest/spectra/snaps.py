@@ -12,7 +12,7 @@ import numpy as np
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel
 from tethertest.records.events import Snap
-from tethertest.records.lines import Event
+from tethertest.records.lines import Event, EventKind
 from tethertest.spectra.waves import Medium
 
 #: levels between which a rise is timed, as shares of the peak
@@ -68,10 +68,12 @@ def measured_snaps(
     ----------
     The closed form is held against the solver in ``tests/verification/test_exact_snap.py``.
     """
-    slack = [event.start for event in events if event.kind == "slack" and event.channel == channel.name]
+    slack = [
+        event.start for event in events if event.kind == EventKind.SLACK and event.channel == channel.name
+    ]
     snaps = []
     for event in events:
-        if event.kind != "snap" or event.channel != channel.name:
+        if event.kind != EventKind.SNAP or event.channel != channel.name:
             continue
         following = min((start for start in slack if start > event.start), default=np.inf)
         snap = _measured(channel, event, float(following), medium)
@@ -84,7 +86,8 @@ def with_snaps(channel: Channel, events: Sequence[Event], medium: Medium | None 
     """Return the events of a tension channel, its snaps with their numbers; see `measured_snaps`."""
     snaps = {snap.start: snap for snap in measured_snaps(channel, events, medium)}
     return tuple(
-        replace(event, snap=snaps.get(event.start)) if event.kind == "snap" else event for event in events
+        replace(event, snap=snaps.get(event.start)) if event.kind == EventKind.SNAP else event
+        for event in events
     )
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tethertest.errors import DataError, FileFormatError
-from tethertest.records.channel import Channel, ClockFit, ConditionedRun, Finding, Source, Window
+from tethertest.records.channel import Channel, ClockFit, ConditionedRun, Finding, Severity, Source, Window
 from tethertest.store.guards import (
     checked_series,
     child,
@@ -40,13 +40,12 @@ from tethertest.store.layout import (
 )
 from tethertest.store.names import decoded
 from tethertest.store.seal import check_seal, is_sealed
-from tethertest.units import KINDS
+from tethertest.units import KINDS, Kind
 
 #: a run larger than this in memory is read block by block instead [bytes]
 LARGEST_IN_MEMORY = 4 << 30
 #: bytes that a sample has in memory
 _PER_SAMPLE = 18
-_SEVERITIES = ("note", "warning", "fatal")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -223,7 +222,7 @@ def _series(path: Path, group: Any, name: str) -> StoredSeries:
     nothing = np.zeros(0)
     about = Channel(
         decoded(name),
-        kind,
+        Kind(kind),
         text(path, group, "unit"),
         nothing,
         nothing,
@@ -266,10 +265,10 @@ def _findings(path: Path, group: Any) -> tuple[Finding, ...]:
         spans[int(index)].append((float(start), float(stop)))
     found: list[Finding] = []
     for row, (subject, kind, words, severity) in enumerate(zip(*columns, strict=True)):
-        if severity not in _SEVERITIES:
-            problem = f"found {severity!r}, expected one of {', '.join(_SEVERITIES)}"
+        if severity not in tuple(Severity):
+            problem = f"found {severity!r}, expected one of {', '.join(Severity)}"
             raise refused(path, f"{group.name}/severity", problem)
-        found.append(Finding(subject, kind, words, severity, tuple(spans[row]), int(samples[row])))
+        found.append(Finding(subject, kind, words, Severity(severity), tuple(spans[row]), int(samples[row])))
     return tuple(found)
 
 

@@ -4,25 +4,43 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Any, Final
 
 from tethertest.errors import QuantityError
 from tethertest.units.common import common_factor
 from tethertest.units.registry import STANDARD_GRAVITY, is_ratio, is_voltage_ratio, parse_unit, si_unit
 
+
+class Kind(StrEnum):
+    """What a channel measures; the value is the word in JSON."""
+
+    TENSION = "tension"
+    STRAIN = "strain"
+    WAVELENGTH = "wavelength"
+    DISPLACEMENT = "displacement"
+    VELOCITY = "velocity"
+    ACCELERATION = "acceleration"
+    TEMPERATURE = "temperature"
+    VOLTAGE = "voltage"
+    RATIO = "ratio"
+    COUNT = "count"
+    OTHER = "other"
+
+
 #: kind of channel -> SI unit of its values ("" where the logger's own unit stays)
-KINDS: Final = {
-    "tension": "N",
-    "strain": "1",
-    "wavelength": "m",
-    "displacement": "m",
-    "velocity": "m/s",
-    "acceleration": "m/s^2",
-    "temperature": "K",
-    "voltage": "V",
-    "ratio": "1",
-    "count": "count",
-    "other": "",
+KINDS: Final[dict[str, str]] = {
+    Kind.TENSION: "N",
+    Kind.STRAIN: "1",
+    Kind.WAVELENGTH: "m",
+    Kind.DISPLACEMENT: "m",
+    Kind.VELOCITY: "m/s",
+    Kind.ACCELERATION: "m/s^2",
+    Kind.TEMPERATURE: "K",
+    Kind.VOLTAGE: "V",
+    Kind.RATIO: "1",
+    Kind.COUNT: "count",
+    Kind.OTHER: "",
 }
 
 #: a mass unit on a load cell's channel means the weight of that mass
@@ -53,7 +71,7 @@ _VOLT_OVER_VOLT = re.compile(r"([mµμu]?V|volts?)\s*/\s*\1", re.IGNORECASE)
 class UnitScale:
     """Linear map from a value as written to SI: ``si = factor * written + offset``."""
 
-    kind: str  #: key of `KINDS`
+    kind: Kind
     unit: str  #: SI unit of the result
     factor: float
     offset: float = 0.0
@@ -82,19 +100,19 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
     """
     text = written.strip()
     if kind == "tension" and text.lower() in _FORCE_OF_MASS:
-        return UnitScale("tension", "N", _FORCE_OF_MASS[text.lower()] * STANDARD_GRAVITY)
+        return UnitScale(Kind.TENSION, "N", _FORCE_OF_MASS[text.lower()] * STANDARD_GRAVITY)
     if kind == "acceleration" and text.lower() in {"g", "gn", "g0"}:
-        return UnitScale("acceleration", "m/s^2", STANDARD_GRAVITY)
+        return UnitScale(Kind.ACCELERATION, "m/s^2", STANDARD_GRAVITY)
     if text.lower() in _CELSIUS and kind in {None, "temperature"}:
-        return UnitScale("temperature", "K", 1.0, 273.15)
+        return UnitScale(Kind.TEMPERATURE, "K", 1.0, 273.15)
     if text.lower() in _FAHRENHEIT and kind in {None, "temperature"}:
-        return UnitScale("temperature", "K", 5.0 / 9.0, 459.67 * 5.0 / 9.0)
+        return UnitScale(Kind.TEMPERATURE, "K", 5.0 / 9.0, 459.67 * 5.0 / 9.0)
     if not text and kind is None:
-        return UnitScale("other", "", 1.0)
+        return UnitScale(Kind.OTHER, "", 1.0)
     likely = _likely_kind(text) if kind is None else kind
     common = common_factor(text, KINDS.get(likely, ""))
     if common is not None and (likely != "ratio" or text == "mV/V"):
-        return UnitScale(likely, KINDS[likely], common)
+        return UnitScale(Kind(likely), KINDS[likely], common)
     quantity = parse_unit(text)
     dimension = quantity.dimensionality
     found = kind if kind is not None else _kind_of(text, quantity)
@@ -103,7 +121,7 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
         message = f"kind {found!r} is not known"
         raise QuantityError(message, f"use one of {', '.join(KINDS)}")
     if not target:
-        return UnitScale("other", text, 1.0)
+        return UnitScale(Kind.OTHER, text, 1.0)
     unit = si_unit(target)
     if found == "ratio" and not (_VOLT_OVER_VOLT.fullmatch(text) or is_voltage_ratio(quantity)):
         message = f"unit {written!r} is no output of a bridge, volt over volt"
@@ -111,7 +129,7 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
     if dimension != unit.dimensionality:
         message = f"unit {written!r} has dimension {dimension}, expected one of {found} ({target})"
         raise QuantityError(message, "correct the sensor's kind in the rig file or the log's units")
-    return UnitScale(found, target, float(quantity.to(unit).magnitude))
+    return UnitScale(Kind(found), target, float(quantity.to(unit).magnitude))
 
 
 def _likely_kind(text: str) -> str:

@@ -10,9 +10,18 @@ from pathlib import Path
 import numpy as np
 
 from tethertest.records.cable import Cable, Platform, PlatformMode
-from tethertest.records.channel import Channel, ClockFit, ConditionedRun, Finding, Flag, Source, Window
+from tethertest.records.channel import (
+    Channel,
+    ClockFit,
+    ConditionedRun,
+    Finding,
+    Flag,
+    Severity,
+    Source,
+    Window,
+)
 from tethertest.records.comparison import Comparison, Metric, Verdict
-from tethertest.records.lines import ChannelLines, DriveFit, Event, Line, LineVerdict
+from tethertest.records.lines import ChannelLines, DriveFit, Event, EventKind, Line, LineVerdict
 from tethertest.records.report import Provenance, Report
 from tethertest.records.response import ErrorBudget, Field, Response, Status
 from tethertest.records.rig import Instrument, Limits, Rig, Sensor
@@ -59,7 +68,7 @@ def bare_report() -> Report:
         report.measured,
         channels=(),
         clocks=(),
-        findings=(Finding("daq", "clock_broken", "the log has no usable clock", "fatal"),),
+        findings=(Finding("daq", "clock_broken", "the log has no usable clock", Severity.FATAL),),
         rest_before=None,
         rest_after=None,
         steady=None,
@@ -144,18 +153,23 @@ def _conditioned(channels: tuple[Channel, ...]) -> ConditionedRun:
         ClockFit("encoder", "daq", -0.4127, 0.0009, -22.7e-6, 6.4e-6, "fundamental of the drive", ()),
     )
     findings = (
-        Finding("tension_top", "spike", "12 single samples far from their neighbours", "note", (), 12),
-        Finding("tension_top", "stuck", "the value repeats for 0.40 s", "warning", ((48.0, 48.4),), 400),
+        Finding("tension_top", "spike", "12 single samples far from their neighbours", Severity.NOTE, (), 12),
+        Finding(
+            "tension_top", "stuck", "the value repeats for 0.40 s", Severity.WARNING, ((48.0, 48.4),), 400
+        ),
         Finding(
             "fbg4",
             "lost",
             "the grating's peak was not seen; later columns slipped by one",
-            "warning",
+            Severity.WARNING,
             ((30.37, 36.36),),
             600,
         ),
         Finding(
-            "interrogator", "day_month_swapped", "the stamps say 9 May; run.toml says 5 September", "warning"
+            "interrogator",
+            "day_month_swapped",
+            "the stamps say 9 May; run.toml says 5 September",
+            Severity.WARNING,
         ),
     )
     return ConditionedRun(
@@ -237,8 +251,8 @@ def _events(frequency: float, shift: float) -> tuple[Event, ...]:
     found = []
     for cycle in range(round(10.0 * frequency), round(83.0 * frequency)):
         middle, half = (cycle + 0.5) / frequency + shift, 0.1 / frequency
-        found.append(Event("slack", "tension_bottom", middle - half, middle + half, 0.0))
-        found.append(Event("snap", "tension_bottom", middle + half, middle + half + 0.05, 9.3))
+        found.append(Event(EventKind.SLACK, "tension_bottom", middle - half, middle + half, 0.0))
+        found.append(Event(EventKind.SNAP, "tension_bottom", middle + half, middle + half + 0.05, 9.3))
     return tuple(found)
 
 

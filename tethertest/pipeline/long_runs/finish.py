@@ -21,7 +21,7 @@ from tethertest.pipeline.long_runs.columns import Sizes, blocks
 from tethertest.pipeline.long_runs.noise import white_noise_of
 from tethertest.pipeline.long_runs.rest import Zeroed
 from tethertest.records.arrays import FloatArray
-from tethertest.records.channel import Channel, Finding, Flag
+from tethertest.records.channel import Channel, Finding, Flag, Severity
 from tethertest.records.run import Run
 from tethertest.store.write import StoreWriter
 
@@ -105,7 +105,7 @@ class Final:
                 name,
                 "excluded",
                 f"{item.span[0]:g}-{item.span[1]:g} s excluded by hand: {item.reason}",
-                "note",
+                Severity.NOTE,
                 (item.span,),
                 count,
             )

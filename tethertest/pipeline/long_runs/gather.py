@@ -11,7 +11,7 @@ from tethertest.conditioning.mapping import Pairing, paired
 from tethertest.conditioning.starts import start_after
 from tethertest.errors import DataError
 from tethertest.pipeline.long_runs.columns import Column, Scratch
-from tethertest.records.channel import Finding, RawLog
+from tethertest.records.channel import Finding, RawLog, Severity
 from tethertest.records.run import Log, Run
 
 #: kinds of sensors whose samples are conditioned one by one or from a few neighbours
@@ -85,7 +85,7 @@ def gathered(
         raise DataError(message, "export the log again", path=entry.file)
     raw = replace(last, channels=())
     start, _ = start_after(raw, entry, run.file.date)
-    remarks = (Finding(entry.clock, "log", text, "note") for text in raw.remarks)
+    remarks = (Finding(entry.clock, "log", text, Severity.NOTE) for text in raw.remarks)
     return Gathered(raw, entry, first, start, time, tuple(values), (*found, *remarks))
 
 

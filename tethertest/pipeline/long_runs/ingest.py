@@ -18,7 +18,7 @@ from tethertest.pipeline.long_runs.flagging import Flagged, flagged, thinned
 from tethertest.pipeline.long_runs.gather import gathered
 from tethertest.pipeline.long_runs.record import record_of
 from tethertest.pipeline.long_runs.rest import zeroed_sensors
-from tethertest.records.channel import ClockFit, Finding, RawLog
+from tethertest.records.channel import ClockFit, Finding, RawLog, Severity
 from tethertest.records.run import Log, Run
 from tethertest.store import StoreHeader, new_store
 
@@ -197,7 +197,7 @@ def _told(factors: Mapping[str, int]) -> list[Finding]:
             key,
             "thinned",
             f"larger than memory: clocks and windows were found on means of {factor} samples",
-            "note",
+            Severity.NOTE,
         )
         for key, factor in factors.items()
         if factor > 1

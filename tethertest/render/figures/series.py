@@ -11,7 +11,7 @@ from matplotlib.transforms import blended_transform_factory
 
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Window
-from tethertest.records.lines import Event
+from tethertest.records.lines import Event, EventKind
 from tethertest.render.decimate import envelope, extreme_indices
 from tethertest.render.figures.style import (
     BLUE,
@@ -63,7 +63,7 @@ def _draw_pair(axes: Axes, pair: Pair, window: Window, solid: Style, dashed: Sty
 
 def draw_slack(axes: Axes, events: Sequence[Event], channel: str) -> None:
     """Shade the slack intervals of a channel."""
-    slack = [event for event in events if event.kind == "slack" and event.channel == channel]
+    slack = [event for event in events if event.kind == EventKind.SLACK and event.channel == channel]
     if slack:
         bars = [(event.start, event.stop - event.start) for event in slack]
         across = blended_transform_factory(axes.transData, axes.transAxes)

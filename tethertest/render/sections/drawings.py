@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tethertest.records.lines import EventKind
 from tethertest.records.report import Report
 from tethertest.render.blocks import Block, Section, Sentence
 from tethertest.render.figures.along import along_figure
@@ -90,7 +91,7 @@ def _overlay(report: Report, pair: Pair, *, first_screen: bool = False) -> Block
         return Sentence(
             f"No overlay of {pair.name}: the run has no usable sample of it, and nothing was replayed there."
         )
-    slack = [event for event in report.events if event.kind == "slack"]
+    slack = [event for event in report.events if event.kind == EventKind.SLACK]
     return tension_overlay(
         pair,
         whole_window(report),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tethertest.records.channel import Channel, Finding, Window
+from tethertest.records.channel import Channel, Finding, Severity, Window
 from tethertest.records.report import Report
 from tethertest.render.blocks import (
     Block,
@@ -18,8 +18,8 @@ from tethertest.render.scales import scale_for
 from tethertest.render.text import ABSENT, COVERAGE_95, fixed, number, percent, plus_minus, span, words
 
 SPANS_SHOWN = 4
-_TONES = {"fatal": "fail", "warning": "undecided", "note": "quiet"}
-_SEVERITY_ORDER = {"fatal": 0, "warning": 1, "note": 2}
+#: the weightiest first
+_TONES = {Severity.FATAL: "fail", Severity.WARNING: "undecided", Severity.NOTE: "quiet"}
 
 
 def quality_section(report: Report) -> Section:
@@ -42,10 +42,10 @@ def quality_section(report: Report) -> Section:
 
 
 def _findings_table(findings: tuple[Finding, ...]) -> Table:
-    ordered = sorted(findings, key=lambda finding: _SEVERITY_ORDER.get(finding.severity, 1))
+    ordered = sorted(findings, key=lambda finding: list(_TONES).index(finding.severity))
     rows = tuple(
         row(
-            Cell(finding.severity, tone=_TONES.get(finding.severity, "undecided"), badge=True),
+            Cell(finding.severity, tone=_TONES[finding.severity], badge=True),
             finding.subject,
             words(finding.kind),
             Cell(finding.text, tone="prose"),

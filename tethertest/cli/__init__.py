@@ -5,6 +5,7 @@ Exit codes: 0 pass, 1 fail, 2 bad input, 3 a fault of the program, 4 undecided.
 
 from __future__ import annotations
 
+import gc
 import io
 import sys
 
@@ -37,9 +38,13 @@ app.callback()(show_version)
 for command in (report, inspect, new, analyze, ingest, export, solve, scale, bench, schema):
     app.command()(command)
 
+#: as Python's own, but seldom: the objects of a few imported libraries are searched for garbage in vain
+_COLLECTIONS = (100_000, 20, 100)
+
 
 def main() -> None:
     """Run the command line; a user's mistake is one message and exit code 2, never a traceback."""
+    gc.set_threshold(*_COLLECTIONS)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a file's name may be no text in the terminal's encoding
             stream.reconfigure(errors="backslashreplace")

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from tethertest.records.channel import Channel, Finding, Severity
 from tethertest.records.rig import Rig
@@ -29,15 +28,20 @@ def pushing_findings(channels: Sequence[Channel], rig: Rig) -> tuple[Finding, ..
     rig : Rig
         Of its cable, what is above a cell may stand on it when it is slack.
     """
+    from scipy.ndimage import median_filter
+
     weight = rig.cable.mass_per_length * rig.cable.length * rig.gravity
     found = []
     for channel in channels:
         if channel.kind != "tension" or not channel.usable.any() or channel.rate <= 0.0:
             continue
-        # a low-pass would ring below zero beside every snap
-        middle = median_filter(filled(channel), max(round(LONGEST * channel.rate), 1))
         lightest = -weight * (1.0 - (channel.at or 0.0))
         limit = SIGMAS * float(np.hypot(ZERO, channel.offset_uncertainty))
+        values = filled(channel)
+        if not np.any(values < lightest - limit):
+            continue
+        # a low-pass would ring below zero beside every snap
+        middle = median_filter(values, max(round(LONGEST * channel.rate), 1))
         below = np.concatenate(([False], middle < lightest - limit, [False]))
         starts, stops = np.flatnonzero(np.diff(below.astype(np.int8))).reshape(-1, 2).T
         long = (stops - starts) / channel.rate >= LONGEST

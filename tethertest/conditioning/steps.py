@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
 
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Flag
@@ -65,10 +64,10 @@ def _alone(values: FloatArray, edge: FloatArray, sigma: float, usable: BoolArray
     """Return the rows of edges that stand alone between two levels."""
     height = np.abs(edge)
     rows = np.arange(AROUND, edge.size - AROUND - 1)
-    highest = maximum_filter1d(height, AROUND)  # of the five before a row, itself and the four after
-    half = AROUND // 2
-    beside = np.maximum(highest[rows - half], highest[rows + AROUND - half + 1])
-    rows = rows[(height[rows] > HEIGHT_SIGMAS * np.sqrt(2.0) * sigma) & (height[rows] > ISOLATION * beside)]
+    rows = rows[height[rows] > HEIGHT_SIGMAS * np.sqrt(2.0) * sigma]
+    around = np.lib.stride_tricks.sliding_window_view(height, AROUND)
+    beside = np.maximum(around[rows - AROUND].max(axis=1), around[rows + 1].max(axis=1))
+    rows = rows[height[rows] > ISOLATION * beside]
     near = rows[:, None] + np.arange(1 - BESIDE, 1 + BESIDE)
     levels = values[near].reshape(rows.size, 2, BESIDE).mean(axis=2)
     stays = (levels[:, 1] - levels[:, 0]) / edge[rows] > STAYS_NEAR

@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import Any, Final
 
 from tethertest.errors import QuantityError
-from tethertest.units.common import common_factor
+from tethertest.units.common import common_dimension, common_factor, dimension_text
 from tethertest.units.registry import STANDARD_GRAVITY, is_ratio, is_voltage_ratio, parse_unit, si_unit
 
 
@@ -109,10 +109,8 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
         return UnitScale(Kind.TEMPERATURE, "K", 5.0 / 9.0, 459.67 * 5.0 / 9.0)
     if not text and kind is None:
         return UnitScale(Kind.OTHER, "", 1.0)
-    likely = _likely_kind(text) if kind is None else kind
-    common = common_factor(text, KINDS.get(likely, ""))
-    if common is not None and (likely != "ratio" or text == "mV/V"):
-        return UnitScale(Kind(likely), KINDS[likely], common)
+    if (common := _common_scale(text, written, _likely_kind(text) if kind is None else kind)) is not None:
+        return common
     quantity = parse_unit(text)
     dimension = quantity.dimensionality
     found = kind if kind is not None else _kind_of(text, quantity)
@@ -127,9 +125,27 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
         message = f"unit {written!r} is no output of a bridge, volt over volt"
         raise QuantityError(message, "log it in mV/V: um/m holds the amplifier's gauge factor too")
     if dimension != unit.dimensionality:
-        message = f"unit {written!r} has dimension {dimension}, expected one of {found} ({target})"
-        raise QuantityError(message, "correct the sensor's kind in the rig file or the log's units")
+        raise _wrong_dimension(written, str(dimension), found)
     return UnitScale(Kind(found), target, float(quantity.to(unit).magnitude))
+
+
+def _common_scale(text: str, written: str, kind: str) -> UnitScale | None:
+    """Return the scale of a common unit, None where pint is to be asked."""
+    target = KINDS.get(kind)
+    if not target or (kind == "ratio" and text != "mV/V"):
+        return None
+    factor = common_factor(text, target)
+    if factor is not None:
+        return UnitScale(Kind(kind), target, factor)
+    found, wanted = common_dimension(text), common_dimension(target)
+    if found is not None and wanted is not None and found != wanted:
+        raise _wrong_dimension(written, dimension_text(found), kind)
+    return None
+
+
+def _wrong_dimension(written: str, dimension: str, kind: str) -> QuantityError:
+    message = f"unit {written!r} has dimension {dimension}, expected one of {kind} ({KINDS[kind]})"
+    return QuantityError(message, "correct the sensor's kind in the rig file or the log's units")
 
 
 def _likely_kind(text: str) -> str:

@@ -39,6 +39,23 @@ SI_UNITS: Final = {
     "V": SIUnit({"M": 1, "L": 2, "T": -3, "A": -1}, {"V": 1.0, "mV": 1e-3}),
 }  # fmt: skip
 
+_NAMES: Final = {"L": "[length]", "M": "[mass]", "T": "[time]", "K": "[temperature]", "A": "[current]"}
+
+
+def common_dimension(written: str) -> dict[str, int] | None:
+    """Return the dimension of a unit as written, None where pint is to be asked."""
+    return next((known.dimension for known in SI_UNITS.values() if written in known.factors), None)
+
+
+def dimension_text(dimension: dict[str, int]) -> str:
+    """Return a dimension as pint writes it: ``[mass] * [length] / [time] ** 2``."""
+    if not dimension:
+        return "dimensionless"
+    powers = {name: f" ** {abs(power)}" if abs(power) != 1 else "" for name, power in dimension.items()}
+    over = " * ".join(f"{_NAMES[name]}{powers[name]}" for name, power in dimension.items() if power > 0)
+    under = [f" / {_NAMES[name]}{powers[name]}" for name, power in dimension.items() if power < 0]
+    return "".join((over or "1", *under))
+
 
 def common_factor(written: str, unit: str) -> float | None:
     """Return what a unit as written is in an SI unit, None where pint is to be asked."""

@@ -12,7 +12,7 @@ from unittest.mock import patch
 
 from reports.fuzzing import judge
 from reports.fuzzing.seeds import seeds
-from tethertest.readers.containers import rehearsal
+from tethertest.readers.guards import sandboxed_read
 from tethertest.render.write import write_files
 
 WHAT = """\
@@ -35,7 +35,7 @@ def main(arguments: list[str]) -> int:
     asked = parser.parse_args(arguments)
     numbers = range(asked.first, asked.first + asked.mutants)
     tallies = {}
-    with tempfile.TemporaryDirectory() as folder, patch.object(rehearsal, "_PATIENCE", PATIENCE):
+    with tempfile.TemporaryDirectory() as folder, patch.object(sandboxed_read, "_PATIENCE", PATIENCE):
         warnings.simplefilter("error")
         for reader, sound in seeds().items():
             if asked.reader in {None, reader}:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from reports.fuzzing.__main__ import PATIENCE
-from tethertest.readers.containers import rehearsal
+from tethertest.readers.guards import sandboxed_read
 
 
 @pytest.fixture(autouse=True)
 def impatience(monkeypatch):
     """Give the process that reads first little time."""
-    monkeypatch.setattr(rehearsal, "_PATIENCE", PATIENCE)
+    monkeypatch.setattr(sandboxed_read, "_PATIENCE", PATIENCE)

@@ -13,7 +13,8 @@ import pytest
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import identify, read_log
-from tethertest.readers.containers import limits, sheet, workbook
+from tethertest.readers.containers import sheet, workbook
+from tethertest.readers.guards import limits
 
 T = np.arange(20) / 50.0
 F = 5.0 + np.sin(T)

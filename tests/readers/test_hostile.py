@@ -11,7 +11,7 @@ import pytest
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
-from tethertest.readers.containers import zips
+from tethertest.readers.guards import zips
 
 GOOD = "time [s],F [N]\n0.0,1.5\n0.5,2.5\n1.0,3.5\n"
 

@@ -12,8 +12,8 @@ from asammdf import MDF, Signal
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import identify, read_log
-from tethertest.readers.containers import mdf_blocks, rehearsal
 from tethertest.readers.formats import mdf
+from tethertest.readers.guards import mdf_blocks, sandboxed_read
 
 T = np.arange(40) / 50.0
 F = 5.0 + np.sin(T)
@@ -186,7 +186,7 @@ HOSTILE = {
 @pytest.mark.parametrize(("change", "words"), HOSTILE.values(), ids=HOSTILE)
 def test_hostile_blocks_are_refused_before_they_are_followed(made, change, words, monkeypatch):
     path = made(change=change)
-    monkeypatch.setattr(rehearsal, "_child", None)  # no other process is asked: it would raise
+    monkeypatch.setattr(sandboxed_read, "_child", None)  # no other process is asked: it would raise
     refused(path, words)
 
 
@@ -209,7 +209,7 @@ OLD = {
 @pytest.mark.parametrize(("change", "words"), OLD.values(), ids=OLD)
 def test_hostile_blocks_of_version_3_are_refused(made, change, words, monkeypatch):
     path = made(version="3.30", change=change)
-    monkeypatch.setattr(rehearsal, "_child", None)
+    monkeypatch.setattr(sandboxed_read, "_child", None)
     refused(path, words)
 
 
@@ -251,14 +251,14 @@ def test_a_packed_block_that_says_it_is_huge_is_refused(made):
 
 def test_a_packed_block_of_columns_without_width_is_refused(made, monkeypatch):
     path = made(compression=2, change=put(b"##DZ", 24 + 4, "<I", 0))
-    monkeypatch.setattr(rehearsal, "_child", None)
+    monkeypatch.setattr(sandboxed_read, "_child", None)
     refused(path, "turned by columns of no width")
 
 
 def test_what_asammdf_prints_is_no_answer(made, capsys, monkeypatch):
     """It prints its lists to standard output where a channel cannot be selected: here its name is no text."""
     path = made(change=put(b"##CN", 24 + 16, "<Q", 64, 1))
-    monkeypatch.setattr(mdf, "rehearse", lambda *_: None)
+    monkeypatch.setattr(mdf, "read_in_sandbox", lambda *_: None)
     refused(path, "the MDF file is damaged or cut")
     assert capsys.readouterr().out == ""
 

@@ -1,8 +1,14 @@
-"""An HDF5 file as a tree: only hard links are followed, and only what lies in the file itself is read."""
+"""An HDF5 file as a tree: only hard links are followed, and only what lies in the file itself is read.
+
+References
+----------
+Eaton et al., "NetCDF Climate and Forecast (CF) Metadata Conventions", section 8.1, packed data.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 from math import prod
 from pathlib import Path
@@ -11,29 +17,48 @@ from typing import Any, Final
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.limits import (
-    CELLS,
-    COMPRESSION_RATIO,
-    DEPTH,
-    OBJECTS,
-    RATIO_FROM,
-    TEXT_BYTES,
-)
-from tethertest.readers.containers.packing import PLAIN, Packing, packing_of
 from tethertest.readers.containers.table import Column, Numbers
 from tethertest.readers.containers.tree import NAME_LISTS, UNIT_KEYS, Branch, Leaf, Records, facts_of
+from tethertest.readers.guards.hdf5_sets import trouble_of
+from tethertest.readers.guards.limits import DEPTH, OBJECTS, TEXT_BYTES
 
-#: deflate, shuffle, fletcher32, szip, nbit, scaleoffset; lzf comes with h5py
-_FILTERS: Final = {
-    1: "deflate",
-    2: "shuffle",
-    3: "fletcher32",
-    4: "szip",
-    5: "nbit",
-    6: "scaleoffset",
-    32000: "lzf",
-}
 _NUMERIC: Final = "biuf"
+#: attributes of a data set whose numbers are packed, as the CF conventions of netCDF have it
+_SCALE, _OFFSET = "scale_factor", "add_offset"
+_MISSING: Final = ("_FillValue", "missing_value")
+
+
+@dataclass(frozen=True, slots=True)
+class Packing:
+    """What makes the numbers of a data set its values."""
+
+    scale: float = 1.0
+    offset: float = 0.0
+    missing: tuple[float, ...] = ()  #: numbers that stand for no value
+
+    @property
+    def remark(self) -> str:
+        """What is done, in words; "" where nothing is."""
+        said = []
+        if (self.scale, self.offset) != (1.0, 0.0):
+            said.append(
+                f"values are {_SCALE} {self.scale:g} times what is stored, plus {_OFFSET} {self.offset:g}"
+            )
+        if self.missing:
+            said.append(f"{' and '.join(f'{value:g}' for value in self.missing)} read as missing")
+        return ", ".join(said)
+
+    def unpacked(self, stored: Numbers) -> Numbers:
+        """Return the values: as stored where nothing is packed, else as float64 with NaN for missing."""
+        if self == PLAIN or stored.dtype.kind not in "iuf":
+            return stored
+        values = stored.astype(np.float64) * self.scale + self.offset
+        for number in self.missing:
+            values[stored == number] = np.nan
+        return values
+
+
+PLAIN: Final = Packing()
 
 
 class Walk:
@@ -182,34 +207,6 @@ def values_of(path: Path, item: Any) -> Numbers:
         raise FileFormatError(message, "copy the whole file again", path=path) from error
 
 
-def trouble_of(item: Any, shape: tuple[int, ...]) -> str:
-    """Return why a data set is not read, before anything of it is."""
-    if item.is_virtual or item.external is not None:
-        return "keeps its values in another file"
-    if prod(shape) > CELLS:
-        return f"declares {'x'.join(map(str, shape))} values, expected at most {CELLS}"
-    if item.dtype.kind == "V" and prod(shape) * max(item.dtype.itemsize // 8, 1) > CELLS:
-        return f"declares {shape[0]} records of {item.dtype.itemsize} bytes, expected at most {CELLS} numbers"
-    if prod(shape) * item.dtype.itemsize > max(RATIO_FROM, COMPRESSION_RATIO * item.file.id.get_filesize()):
-        return "unpacks to more than a log of the file's size holds"
-    properties = item.id.get_create_plist()
-    for number in range(properties.get_nfilters()):
-        code, _, _, label = properties.get_filter(number)
-        if code not in _FILTERS:
-            name = label.decode(errors="replace")[:40] or code
-            return f"is compressed by a filter that is not known here ({name}): export it with gzip"
-    if prod(shape) and item.id.get_storage_size() == 0:
-        return "declares values but holds none"
-    if item.chunks is not None:
-        if prod(item.chunks) * item.dtype.itemsize > CELLS * 8:
-            return "has chunks larger than a log"
-        wanted = prod(-(-side // chunk) for side, chunk in zip(shape, item.chunks, strict=True))
-        written = item.id.get_num_chunks()
-        if written < wanted and not (item.dtype.kind == "f" and np.isnan(item.fillvalue)):
-            return f"was written in part only: {written} of {wanted} chunks"
-    return ""
-
-
 def _fields(kind: Any) -> dict[str, tuple[str, int | None]]:
     """Return the numeric columns of a record: a field, or an element of a field that is a short vector."""
     found: dict[str, tuple[str, int | None]] = {}
@@ -252,3 +249,20 @@ def _decoded(value: object) -> str:
     if isinstance(value, bytes):
         value = value.decode("utf-8", errors="replace")
     return value.strip().strip("\0") if isinstance(value, str) else ""
+
+
+def packing_of(item: Any) -> Packing:
+    """Return how a data set of h5py is packed, by its attributes of one number."""
+    scale, offset = (_numbers(item, key) for key in (_SCALE, _OFFSET))
+    missing = {number for key in _MISSING for number in _numbers(item, key)}
+    return Packing(scale[0] if scale else 1.0, offset[0] if offset else 0.0, tuple(sorted(missing)))
+
+
+def _numbers(item: Any, key: str) -> tuple[float, ...]:
+    if key not in item.attrs:
+        return ()
+    attribute = item.attrs.get_id(key)
+    if prod(attribute.shape) != 1 or attribute.dtype.kind not in "iuf":
+        return ()
+    number = float(np.asarray(item.attrs[key]).reshape(-1)[0])
+    return (number,) if np.isfinite(number) else ()

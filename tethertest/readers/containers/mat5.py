@@ -18,15 +18,15 @@ from typing import Final
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.limits import (
+from tethertest.readers.containers.matlab_tree import Array, Item, Other, Struct, cell_of
+from tethertest.readers.containers.table import Numbers
+from tethertest.readers.guards.limits import (
     COMPRESSION_RATIO,
     DECOMPRESSED_BYTES,
     DEPTH,
     OBJECTS,
     RATIO_FROM,
 )
-from tethertest.readers.containers.matlab_items import Array, Item, Other, Struct, cell_of
-from tethertest.readers.containers.table import Numbers
 
 _HEADER: Final = 128
 _NUMBERS: Final = {

@@ -15,10 +15,11 @@ from typing import Any, Final
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.hdf5_tree import text_attribute, trouble_of, values_of
-from tethertest.readers.containers.limits import DEPTH, OBJECTS, TEXT_BYTES
-from tethertest.readers.containers.matlab_items import Array, Item, Other, Struct, cell_of
+from tethertest.readers.containers.hdf5_tree import text_attribute, values_of
+from tethertest.readers.containers.matlab_tree import Array, Item, Other, Struct, cell_of
 from tethertest.readers.containers.table import Numbers
+from tethertest.readers.guards.hdf5_sets import trouble_of
+from tethertest.readers.guards.limits import DEPTH, OBJECTS, TEXT_BYTES
 
 _NUMERIC: Final = "biuf"
 #: fields of the records that MATLAB writes for complex numbers

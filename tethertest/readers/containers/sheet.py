@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.limits import SHEET_CELLS
 from tethertest.readers.containers.time import CLOCK_UNIT
 from tethertest.readers.containers.workbook import Merged, checked_sheet, column_name, merged_cells
+from tethertest.readers.guards.limits import SHEET_CELLS
 
 #: what is no part of the number in a format: quoted, escaped, padding, and brackets other than [h], [m], [s]
 _LITERAL: Final = re.compile(r'"[^"]*"|\\.|_.|\*.|\[(?!h+\]|m+\]|s+\])[^\]]*\]')

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import unique_names
-from tethertest.readers.containers.limits import COLUMNS
+from tethertest.readers.guards.limits import COLUMNS
 from tethertest.records.run import Log
 
 Numbers: TypeAlias = npt.NDArray[Any]

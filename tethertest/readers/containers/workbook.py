@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.limits import COMPRESSION_RATIO, DECOMPRESSED_BYTES, RATIO_FROM
-from tethertest.readers.containers.zips import ZIP_MAGIC, is_workbook, member_stream, opened_zip
+from tethertest.readers.guards.limits import COMPRESSION_RATIO, DECOMPRESSED_BYTES, RATIO_FROM
+from tethertest.readers.guards.zips import ZIP_MAGIC, is_workbook, member_stream, opened_zip
 
 _PREFIX: Final = rb"(?:\w+:)?"
 #: namespaces of the strict form of the format

@@ -8,8 +8,8 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, with_units
-from tethertest.readers.containers.limits import COLUMNS
 from tethertest.readers.formats.enlight import find_preamble
+from tethertest.readers.guards.limits import COLUMNS
 from tethertest.readers.text.document import HEAD_BYTES, Head, read_document
 from tethertest.readers.text.rows import followed_lines
 from tethertest.readers.text.stamps import parse_stamps, time_zone_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final
 
@@ -12,9 +12,9 @@ from tethertest.errors import FileFormatError, TethertestError
 from tethertest.readers.containers.choice import table_of
 from tethertest.readers.containers.hdf5_tree import Walk, text_attribute
 from tethertest.readers.containers.log import log_of
-from tethertest.readers.containers.rehearsal import rehearse
 from tethertest.readers.containers.table import refuse_settings
 from tethertest.readers.containers.tree import Tree
+from tethertest.readers.guards.sandboxed_read import read_in_sandbox
 from tethertest.readers.text.document import Head, read_bytes
 from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
@@ -23,7 +23,6 @@ NAME = "hdf5"
 MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 #: `format` of the root of a run that was written by `tethertest ingest`
 _STORE: Final = "tethertest-run"
-_REHEARSAL: Final = "tethertest.readers.formats.hdf5_rehearsal"
 
 
 def sniff(head: Head) -> str | None:
@@ -54,7 +53,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         file, is larger than a log may be, or is compressed in a way that is not known.
     """
     refuse_settings(path, settings, "an HDF5 log")
-    rehearse(path, _REHEARSAL)
+    read_in_sandbox(path, __name__, "h5py")
     with opened(path) as file:
         if text_attribute(file.attrs, "format") == _STORE:
             message = "found a run that tethertest has stored, expected a raw log"
@@ -64,6 +63,16 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         tree = Tree(path, "the HDF5 file", "/", branches, walk.left_out)
         table, settings = table_of(tree, settings)
     return log_of(NAME, table, settings)
+
+
+def read_everything(path: Path) -> None:
+    """Read each group, attribute and data set."""
+    with opened(path) as file:
+        for branch in Walk(path).branches(file):
+            loads = [table.load for table in branch.leaves] + [table.load for table in branch.records]
+            for load in loads:
+                with suppress(FileFormatError, MemoryError):
+                    load()
 
 
 @contextmanager

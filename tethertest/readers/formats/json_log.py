@@ -15,10 +15,10 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.containers.choice import table_of
-from tethertest.readers.containers.limits import CELLS, COLUMNS, DEPTH, JSON_BYTES, JSON_LISTS, OBJECTS
 from tethertest.readers.containers.log import log_of
 from tethertest.readers.containers.table import Column, Numbers, refuse_settings
 from tethertest.readers.containers.tree import NAME_LISTS, UNIT_KEYS, Branch, Leaf, Records, Tree, facts_of
+from tethertest.readers.guards.limits import CELLS, COLUMNS, DEPTH, JSON_BYTES, JSON_LISTS, OBJECTS
 from tethertest.readers.text.cells import split_unit
 from tethertest.readers.text.document import Head, read_document
 from tethertest.readers.text.stamps import stamp_kind

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
@@ -10,10 +11,10 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.containers import mat5, mat73
 from tethertest.readers.containers.choice import table_of
 from tethertest.readers.containers.log import log_of
-from tethertest.readers.containers.matlab_tree import tree_of
-from tethertest.readers.containers.rehearsal import rehearse
+from tethertest.readers.containers.matlab_tree import Array, Item, Struct, tree_of
 from tethertest.readers.containers.table import refuse_settings
 from tethertest.readers.formats.hdf5 import opened
+from tethertest.readers.guards.sandboxed_read import read_in_sandbox
 from tethertest.readers.text.document import Head, read_bytes
 from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
@@ -26,7 +27,6 @@ _LEVEL_73: Final = {b"\x00\x02IM", b"\x02\x00MI"}
 #: how the header begins where it is not whole or of another version
 _TITLE: Final = b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file"
 _OCTAVE: Final = "# Created by Octave"
-_REHEARSAL: Final = "tethertest.readers.formats.matlab_rehearsal"
 _SAVE: Final = "save it with: save('log.mat', ..., '-v7')"
 
 
@@ -67,7 +67,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     refuse_settings(path, settings, "a MATLAB file", allowed=("date_order",))
     version = read_bytes(path, _HEADER_BYTES)[124:]
     if version in _LEVEL_73:
-        rehearse(path, _REHEARSAL)
+        read_in_sandbox(path, __name__, "h5py")
         with opened(path) as file:
             table, rest = table_of(tree_of(path, mat73.variables(path, file)), settings)
         return log_of(NAME, table, rest)
@@ -81,6 +81,23 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         raise FileFormatError(message, _SAVE, path=path)
     table, rest = table_of(tree_of(path, mat5.variables(path, data)), settings)
     return log_of(NAME, table, rest)
+
+
+def read_everything(path: Path) -> None:
+    """Read each variable of a file of version 7.3."""
+    with opened(path) as file:
+        for _, item in mat73.variables(path, file):
+            _load(item)
+
+
+def _load(item: Item) -> None:
+    if isinstance(item, Array):
+        with suppress(FileFormatError, MemoryError):
+            item.load()
+    elif isinstance(item, Struct):
+        for values in item.fields.values():
+            for value in values:
+                _load(value)
 
 
 def _is_level_4(data: bytes) -> bool:

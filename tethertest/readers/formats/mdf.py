@@ -13,10 +13,10 @@ from typing import Any, Final
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import with_units
-from tethertest.readers.containers.mdf_blocks import check_level_3, check_level_4
-from tethertest.readers.containers.rehearsal import rehearse
 from tethertest.readers.containers.table import refuse_settings
 from tethertest.readers.formats.mdf_channels import channels_of
+from tethertest.readers.guards.mdf_blocks import check_level_3, check_level_4
+from tethertest.readers.guards.sandboxed_read import read_in_sandbox
 from tethertest.readers.text.document import Head, read_bytes
 from tethertest.readers.text.stamps import time_zone_of
 from tethertest.records.channel import RawLog
@@ -27,7 +27,6 @@ _MAGIC: Final = b"MDF     "
 #: what a logger writes until it closes the file
 _UNFINISHED: Final = b"UnFinMF "
 _IDENTIFICATION: Final = 64  #: bytes
-_REHEARSAL: Final = "tethertest.readers.formats.mdf_rehearsal"
 
 
 def sniff(head: Head) -> str | None:
@@ -59,7 +58,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         channel has numbers and a time.
     """
     refuse_settings(path, settings, "an MDF log")
-    with opened(path, is_rehearsed=False) as file:
+    with opened(path) as file:
         wanted = settings.table if settings is not None else None
         channels, remarks = channels_of(path, file, wanted)
         start = _start(path, file, settings)
@@ -72,8 +71,14 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     )
 
 
+def read_everything(path: Path) -> None:
+    """Read each channel."""
+    with opened(path, in_sandbox=True) as file:
+        channels_of(path, file, None)
+
+
 @contextlib.contextmanager
-def opened(path: Path, *, is_rehearsed: bool) -> Iterator[Any]:
+def opened(path: Path, *, in_sandbox: bool = False) -> Iterator[Any]:
     """Open an MDF file whose blocks are sound; another process reads it first, unless this is it.
 
     Raises
@@ -89,8 +94,8 @@ def opened(path: Path, *, is_rehearsed: bool) -> Iterator[Any]:
         raise FileFormatError(message, remedy, path=path) from error
     data = read_bytes(path)
     _check(path, data)
-    if not is_rehearsed:
-        rehearse(path, _REHEARSAL)
+    if not in_sandbox:
+        read_in_sandbox(path, __name__, "asammdf")
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # what it would print is in our own message
     try:
         # it prints what it makes of a damaged file, among the answers of this program

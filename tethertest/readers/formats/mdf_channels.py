@@ -11,8 +11,8 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names
-from tethertest.readers.containers.mdf_blocks import VIRTUAL
 from tethertest.readers.containers.table import listed, toml_text
+from tethertest.readers.guards.mdf_blocks import VIRTUAL
 from tethertest.readers.timeunits import SECONDS
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import RawChannel

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import BinaryIO, Final, cast
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.zips import (
+from tethertest.readers.guards.zips import (
     ZIP_MAGIC,
     LimitedStream,
     is_workbook,

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.limits import COLUMNS
+from tethertest.readers.guards.limits import COLUMNS
 from tethertest.readers.text.cells import (
     bare_unit,
     column_kind,

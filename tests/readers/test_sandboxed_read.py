@@ -14,19 +14,20 @@ import pytest
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
-from tethertest.readers.containers import rehearsal
+from tethertest.readers.guards import sandboxed_read
 
 #: a reader that never ends on "hang", dies on "die", refuses "bad", and is done with anything else
 READER = textwrap.dedent("""
-    import json, os, sys, time
-    print(flush=True)
-    for line in sys.stdin:
-        name = os.path.basename(json.loads(line))
-        if name == "hang":
+    import os, time
+    from tethertest.errors import FileFormatError
+
+    def read_everything(path):
+        if path.name == "hang":
             time.sleep(60)
-        if name == "die":
+        if path.name == "die":
             os._exit(139)
-        print("[]" if name != "bad" else '["it is bad", "mend it"]', flush=True)
+        if path.name == "bad":
+            raise FileFormatError("it is bad", "mend it", path=path)
 """)
 
 
@@ -38,46 +39,46 @@ def reader(tmp_path, monkeypatch):
     for name in ("hang", "die", "bad", "Größe ok"):
         (tmp_path / name).touch()
     yield "odd_reader"
-    if "odd_reader" in rehearsal._children:
-        rehearsal._end("odd_reader")
+    if "odd_reader" in sandboxed_read._children:
+        sandboxed_read._end("odd_reader")
 
 
 def test_the_same_process_serves_every_file(reader, tmp_path):
-    rehearsal.rehearse(tmp_path / "Größe ok", reader)
-    first = rehearsal._children[reader].pid
-    rehearsal.rehearse(tmp_path / "Größe ok", reader)
-    assert rehearsal._children[reader].pid == first
+    sandboxed_read.read_in_sandbox(tmp_path / "Größe ok", reader, "json")
+    first = sandboxed_read._children[reader].pid
+    sandboxed_read.read_in_sandbox(tmp_path / "Größe ok", reader, "json")
+    assert sandboxed_read._children[reader].pid == first
 
 
 @pytest.mark.parametrize(("name", "words"), [("hang", "did not end in 1 s"), ("die", "died of it")])
 def test_what_hangs_or_dies_is_refused_and_the_next_file_is_read(reader, tmp_path, monkeypatch, name, words):
-    rehearsal.rehearse(tmp_path / "Größe ok", reader)
-    monkeypatch.setattr(rehearsal, "_PATIENCE", 1.0)
+    sandboxed_read.read_in_sandbox(tmp_path / "Größe ok", reader, "json")
+    monkeypatch.setattr(sandboxed_read, "_PATIENCE", 1.0)
     with pytest.raises(FileFormatError, match=words):
-        rehearsal.rehearse(tmp_path / name, reader)
+        sandboxed_read.read_in_sandbox(tmp_path / name, reader, "json")
     monkeypatch.undo()
-    assert reader not in rehearsal._children
+    assert reader not in sandboxed_read._children
 
 
 def test_what_the_other_process_refuses_is_refused(reader, tmp_path):
     with pytest.raises(FileFormatError, match="it is bad") as caught:
-        rehearsal.rehearse(tmp_path / "bad", reader)
+        sandboxed_read.read_in_sandbox(tmp_path / "bad", reader, "json")
     assert caught.value.remedy == "mend it"
-    rehearsal.rehearse(tmp_path / "Größe ok", reader)
+    sandboxed_read.read_in_sandbox(tmp_path / "Größe ok", reader, "json")
 
 
 def test_a_reader_that_does_not_start_is_told(tmp_path):
     (tmp_path / "log").touch()
     with pytest.raises(FileFormatError, match="did not start"):
-        rehearsal.rehearse(tmp_path / "log", "no_such_reader")
-    assert "no_such_reader" not in rehearsal._children
+        sandboxed_read.read_in_sandbox(tmp_path / "log", "no_such_reader", "json")
+    assert "no_such_reader" not in sandboxed_read._children
 
 
 def test_a_process_that_was_killed_from_outside_is_replaced(reader, tmp_path):
-    rehearsal.rehearse(tmp_path / "Größe ok", reader)
-    rehearsal._children[reader].kill()
-    rehearsal._children[reader].wait()
-    rehearsal.rehearse(tmp_path / "Größe ok", reader)
+    sandboxed_read.read_in_sandbox(tmp_path / "Größe ok", reader, "json")
+    sandboxed_read._children[reader].kill()
+    sandboxed_read._children[reader].wait()
+    sandboxed_read.read_in_sandbox(tmp_path / "Größe ok", reader, "json")
 
 
 def test_an_address_that_leads_hdf5_in_a_circle_is_refused(tmp_path, monkeypatch):
@@ -92,7 +93,7 @@ def test_an_address_that_leads_hdf5_in_a_circle_is_refused(tmp_path, monkeypatch
     data[heap + 16 : heap + 48] = bytes(32)
     path = tmp_path / "log.h5"
     path.write_bytes(data)
-    monkeypatch.setattr(rehearsal, "_PATIENCE", 2.0)
+    monkeypatch.setattr(sandboxed_read, "_PATIENCE", 2.0)
     with pytest.raises(FileFormatError, match="reading it did not end in 2 s"):
         read_log(path)
 
@@ -118,7 +119,7 @@ def test_a_text_that_says_it_has_two_gigabytes_does_not_get_them(tmp_path):
     path.write_bytes(data)
     with pytest.raises(FileFormatError, match=r"allocat|memory"):
         read_log(path)
-    pid = rehearsal._children["tethertest.readers.formats.hdf5_rehearsal"].pid
+    pid = sandboxed_read._children["tethertest.readers.formats.hdf5"].pid
     status = Path(f"/proc/{pid}/status").read_text(encoding="ascii").splitlines()
     peak = next(line for line in status if line.startswith("VmHWM"))
     assert int(peak.split()[1]) < 1_300_000

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Final
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.limits import (
+from tethertest.readers.guards.limits import (
     CELLS,
     COMPRESSION_RATIO,
     DECOMPRESSED_BYTES,

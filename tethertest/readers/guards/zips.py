@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any, BinaryIO, Final
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.limits import (
+from tethertest.readers.guards.limits import (
     COMPRESSION_RATIO,
     DECOMPRESSED_BYTES,
     DIRECTORY_BYTES,

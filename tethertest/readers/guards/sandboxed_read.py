@@ -1,21 +1,25 @@
 """Read a file in another process first, where a library that a damaged file hangs or crashes does no harm.
 
 HDF5's library follows addresses in the file without end, or out of its memory, where damaged records of the
-file lead it there. No exception tells of that, so the first reading is one that may fail.
+file lead it there. No exception tells of that, so the first reading is one that may fail. The other process
+has a bound on its memory and its time, reads all that could be asked for, and keeps nothing.
 """
 
 from __future__ import annotations
 
 import atexit
 import contextlib
+import importlib
 import json
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
 from tethertest.errors import FileFormatError
+from tethertest.readers.guards.limits import CELLS
 
 #: what a small file may take [s]
 _PATIENCE: Final = 30.0
@@ -23,12 +27,16 @@ _PATIENCE: Final = 30.0
 _START: Final = 120.0
 #: slowest reading of a sound file: deflated, from a network drive [bytes/s]
 _SLOWEST: Final = 2e6
+#: memory for a small file: the largest table that is read, and the libraries [bytes]
+_MEMORY: Final = 8 * CELLS + 400 * 2**20
+#: bytes of memory for each byte of a file: the file, its numbers, and a copy of them in another order
+_MEMORY_RATIO: Final = 12
 
 _busy = threading.Lock()
-_children: dict[str, subprocess.Popen[str]] = {}
+_children: dict[str, subprocess.Popen[str]] = {}  # by the module that reads there
 
 
-def rehearse(path: Path, module: str) -> None:
+def read_in_sandbox(path: Path, module: str, library: str) -> None:
     """Let another process read a file to its end.
 
     Parameters
@@ -36,8 +44,10 @@ def rehearse(path: Path, module: str) -> None:
     path : Path
         The file.
     module : str
-        Module that, run as a script, reads each path given to it as a line of JSON and answers each by a line
-        of JSON: an empty list, or what is wrong with the file and what to do. It begins with an empty line.
+        Module whose `read_everything` reads all of a file that any settings could ask for. Values that cannot
+        be read are none of its errors: who asks for them meets them again.
+    library : str
+        The package that it needs, loaded before the time is taken.
 
     Raises
     ------
@@ -49,7 +59,7 @@ def rehearse(path: Path, module: str) -> None:
         return
     limit = _PATIENCE + path.stat().st_size / _SLOWEST
     with _busy:
-        child = _child(module)
+        child = _child(module, library)
         if child is None:
             message = "the process that tries the file first did not start"
             raise FileFormatError(message, "free memory or processes, and try again", path=path)
@@ -70,14 +80,15 @@ def rehearse(path: Path, module: str) -> None:
         raise FileFormatError(problem, remedy, path=path)
 
 
-def _child(module: str) -> subprocess.Popen[str] | None:
+def _child(module: str, library: str) -> subprocess.Popen[str] | None:
+    """Return the process that reads by a module, started where there is none yet."""
     child = _children.get(module)
     if child is not None and child.poll() is None:
         return child
     if child is not None:
         _end(module)
     child = _children[module] = subprocess.Popen(
-        [sys.executable, "-m", module],
+        [sys.executable, "-c", f"from {__name__} import serve; serve({module!r}, {library!r})"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
@@ -121,3 +132,40 @@ def _end(module: str) -> None:
 def _end_all() -> None:
     for module in list(_children):
         _end(module)
+
+
+def serve(module: str, library: str) -> None:
+    """Be the other process: say by an empty line that all is loaded, and answer each line of the input.
+
+    A line is a path as JSON; its answer is an empty list, or what is wrong with the file and what to do.
+    """
+    read_everything: Callable[[Path], None] = importlib.import_module(module).read_everything
+    with contextlib.suppress(ImportError):  # the first process tells of it
+        importlib.import_module(library)
+    print(flush=True)  # noqa: T201
+    for line in sys.stdin:
+        path = Path(json.loads(line))
+        bound_memory(path)
+        print(json.dumps(_trouble(read_everything, path)), flush=True)  # noqa: T201
+
+
+def _trouble(read_everything: Callable[[Path], None], path: Path) -> list[str]:
+    """Return what is wrong with the records of a file and what to do, or nothing."""
+    try:
+        read_everything(path)
+    except FileFormatError as error:
+        return [error.problem, error.remedy]
+    except MemoryError:
+        return ["the file's own records ask for more memory than it has data", "copy the whole file again"]
+    return []
+
+
+def bound_memory(path: Path) -> None:
+    """Let this process take as much as a sound file of this size needs, where the system can do that."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    _, most = resource.getrlimit(resource.RLIMIT_DATA)
+    bound = _MEMORY + _MEMORY_RATIO * path.stat().st_size
+    resource.setrlimit(resource.RLIMIT_DATA, (bound if most < 0 else min(bound, most), most))

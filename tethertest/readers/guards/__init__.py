@@ -1,0 +1,1 @@
+"""What a hostile or damaged file must pass before a library sees it."""

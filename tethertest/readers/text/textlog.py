@@ -11,8 +11,7 @@ from typing import Any, BinaryIO, Final, TypeAlias
 from tethertest.errors import FileFormatError
 from tethertest.readers.guards.limits import LAYOUT_BYTES, LINE_BYTES
 from tethertest.readers.text.document import HEAD_BYTES, decode, nul_bytes, opened, read_bytes
-from tethertest.readers.text.encoding import detect_encoding
-from tethertest.readers.text.encoding_scan import encoding_of_blocks
+from tethertest.readers.text.encoding import detect_encoding, encoding_of_blocks
 
 #: called with the bytes of the file that were read, and all of them
 Progress: TypeAlias = Callable[[int, int], None]

@@ -10,7 +10,7 @@ from typing import cast, get_args
 from tethertest.errors import DataError
 from tethertest.readers import load_scene
 from tethertest.readers.config.problems import suggestion
-from tethertest.readers.scenes.output import size_problems
+from tethertest.readers.config.scene_checks import size_problems
 from tethertest.readers.scenes.series import read_motion, read_wind
 from tethertest.records.response import Response
 from tethertest.records.scene import FieldName, Scene

@@ -1,1 +1,1 @@
-"""The parts of a scene file, and the measured series it names."""
+"""The measured series that a scene file names."""

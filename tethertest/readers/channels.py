@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from dataclasses import replace
 from pathlib import Path
+from typing import Final
 
 import numpy.typing as npt
 
@@ -12,6 +13,9 @@ from tethertest.errors import FileFormatError
 from tethertest.records.arrays import frozen
 from tethertest.records.channel import RawChannel
 from tethertest.records.run import Log
+
+#: optical interrogators see the bands O to U; values in there are wavelengths [nm]
+INTERROGATOR_BAND: Final = (1260.0, 1680.0)
 
 
 def raw_channel(name: str, unit: str, time: npt.ArrayLike, values: npt.ArrayLike) -> RawChannel:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.channels import raw_channel, unique_names, with_units
+from tethertest.readers.channels import INTERROGATOR_BAND, raw_channel, unique_names, with_units
 from tethertest.readers.formats.enlight import find_preamble, has_mark
 from tethertest.readers.text.cells import split_unit
 from tethertest.readers.text.document import HEAD_BYTES, Head, read_document
@@ -20,8 +19,6 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
 
 NAME = "enlight-sensors"
-#: interrogators see the bands O to U [nm]
-_BANDS: Final = (1260.0, 1680.0)
 
 
 def sniff(head: Head) -> str | None:
@@ -103,4 +100,4 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
 
 def _in_band(values: FloatArray) -> bool:
     finite = values[np.isfinite(values)]
-    return finite.size > 0 and bool(_BANDS[0] <= np.median(finite) <= _BANDS[1])
+    return finite.size > 0 and bool(INTERROGATOR_BAND[0] <= np.median(finite) <= INTERROGATOR_BAND[1])

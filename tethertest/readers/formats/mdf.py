@@ -7,19 +7,24 @@ import datetime as dt
 import io
 import logging
 import warnings
+from collections import Counter
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from tethertest.errors import FileFormatError
-from tethertest.readers.channels import with_units
-from tethertest.readers.containers.table import refuse_settings
-from tethertest.readers.formats.mdf_channels import channels_of
-from tethertest.readers.guards.mdf_blocks import check_level_3, check_level_4
+from tethertest.readers.channels import raw_channel, unique_names, with_units
+from tethertest.readers.containers.table import listed, refuse_settings, toml_text
+from tethertest.readers.guards.mdf_blocks import VIRTUAL, check_level_3, check_level_4
 from tethertest.readers.guards.sandboxed_read import read_in_sandbox
 from tethertest.readers.text.document import Head, read_bytes
 from tethertest.readers.text.stamps import time_zone_of
-from tethertest.records.channel import RawLog
+from tethertest.readers.timeunits import SECONDS
+from tethertest.records.arrays import FloatArray, frozen
+from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.run import Log
 
 NAME = "mdf"
@@ -27,6 +32,13 @@ _MAGIC: Final = b"MDF     "
 #: what a logger writes until it closes the file
 _UNFINISHED: Final = b"UnFinMF "
 _IDENTIFICATION: Final = 64  #: bytes
+#: times are seconds from the start of a log, or since an epoch
+_LATEST: Final = 1e11
+#: what the master of a group counts, and conversions by a formula in the file, in version 4 and 3
+_TIME: Final = 1
+_FORMULA: Final = {True: 3, False: 10}
+#: remarks on single channels before they are only counted
+_SHOWN: Final = 8
 
 
 def sniff(head: Head) -> str | None:
@@ -60,7 +72,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     refuse_settings(path, settings, "an MDF log")
     with opened(path) as file:
         wanted = settings.table if settings is not None else None
-        channels, remarks = channels_of(path, file, wanted)
+        channels, remarks = _channels_of(path, file, wanted)
         start = _start(path, file, settings)
     return RawLog(
         path=path,
@@ -74,7 +86,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
 def read_everything(path: Path) -> None:
     """Read each channel."""
     with opened(path, in_sandbox=True) as file:
-        channels_of(path, file, None)
+        _channels_of(path, file, None)
 
 
 @contextlib.contextmanager
@@ -138,3 +150,156 @@ def _start(path: Path, file: Any, settings: Log | None) -> dt.datetime | None:
     if found.tzinfo is None:
         return found.replace(tzinfo=zone)
     return found if zone is None else found.astimezone(zone)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Group:
+    number: int
+    name: str
+    channels: list[int]
+    trouble: str  #: why none of it is read
+
+
+def _channels_of(path: Path, file: Any, wanted: str | None) -> tuple[list[RawChannel], list[str]]:
+    """Return the channels with numbers and a time, and remarks on all others.
+
+    Parameters
+    ----------
+    path : Path
+        The file, for messages.
+    file : asammdf.MDF
+        The opened file.
+    wanted : str, optional
+        Name of the only group to be read.
+
+    Raises
+    ------
+    FileFormatError
+        There is no such group, or no such channel.
+    """
+    groups = _groups(file)
+    if wanted is not None and wanted not in {group.name for group in groups}:
+        known = listed(group.name for group in groups)
+        message = f"run.toml says table = {toml_text(wanted)}, the MDF file has {known}"
+        lines = " or ".join(f"table = {toml_text(group.name)}" for group in groups[:4])
+        raise FileFormatError(message, f"write for this log in run.toml: {lines}", path=path)
+    found: list[tuple[str, RawChannel]] = []
+    remarks: list[str] = []
+    for group in groups:
+        if wanted in {None, group.name}:
+            if group.trouble:
+                remarks.append(f"the channels of {group.name!r} are left out: {group.trouble}")
+            else:
+                found += [(group.name, channel) for channel in _read(path, file, group, remarks)]
+    if not found:
+        told = "; ".join(remarks[:_SHOWN]) or "it is empty"
+        message = f"the MDF file has no channel with numbers and a time: {told}"
+        raise FileFormatError(message, "export the log again with its time", path=path)
+    more = len(remarks) - 2 * _SHOWN
+    remarks = [*remarks[: 2 * _SHOWN], *([f"{more} more remarks of this kind"] if more > 0 else [])]
+    if wanted is None and len({name for name, _ in found}) > 1:
+        remarks.append(f"groups with a time of their own: {listed(dict(found))}")
+    return _with_names(found, remarks), remarks
+
+
+def _groups(file: Any) -> list[_Group]:
+    written = [_name(group) for group in file.groups]
+    repeated = Counter(written)
+    found = []
+    for number, group in enumerate(file.groups):
+        name = written[number]
+        if not name or repeated[name] > 1:
+            name = f"group {number + 1}"
+        master = file.masters_db.get(number)
+        own = file.virtual_groups_map.get(number, number)
+        trouble = ""
+        if own != number:
+            trouble = "their time is in another group, a layout that is not read"
+        elif master is None or getattr(group.channels[master], "sync_type", _TIME) != _TIME:
+            trouble = "the group has no time"
+        elif _is_nothing(group.channels[master]) and not getattr(group.channels[master], "sampling_rate", 0):
+            trouble = "their time has no bits in the records"  # asammdf would count it in seconds
+        elif _time_unit(group.channels[master]) not in SECONDS:
+            trouble = f"their time has the unit {group.channels[master].unit[:20]!r}"
+        elif not group.channel_group.cycles_nr:
+            trouble = "the group has no samples"
+        found.append(_Group(number, name, [k for k in range(len(group.channels)) if k != master], trouble))
+    return found
+
+
+def _name(group: Any) -> str:
+    """Return the name of the acquisition, or the first line of version 3's comment."""
+    block = group.channel_group
+    text = str(getattr(block, "acq_name", "") or (getattr(block, "comment", "") if _is_old(group) else ""))
+    return text.strip().split("\n")[0][:80]
+
+
+def _is_old(group: Any) -> bool:
+    """Return whether a group is one of version 3."""
+    return not hasattr(group.channel_group, "acq_name")
+
+
+def _read(path: Path, file: Any, group: _Group, remarks: list[str]) -> list[RawChannel]:
+    source = file.groups[group.number]
+    kept = []
+    for index in group.channels:
+        channel = source.channels[index]
+        if _has_formula(channel.conversion, _FORMULA[not _is_old(source)]):
+            remarks.append(f"channel {channel.name!r} has a formula as conversion and is left out")
+        elif _is_nothing(channel):
+            remarks.append(f"channel {channel.name!r} has no bits in the records and is left out")
+        else:
+            kept.append(index)
+    signals = file.select([(None, group.number, index) for index in kept], copy_master=False) if kept else []
+    found = []
+    time: FloatArray | None = None
+    for signal in signals:
+        samples = np.asarray(signal.samples)
+        if samples.dtype.kind not in "biuf" or samples.ndim != 1:
+            remarks.append(f"channel {signal.name!r} holds no single numbers and is left out")
+            continue
+        if time is None:  # channels of one group share the array
+            factor = SECONDS[_time_unit(source.channels[file.masters_db[group.number]])]
+            time = frozen(np.asarray(signal.timestamps, dtype=np.float64) * factor)
+            sound = np.abs(time) < _LATEST
+            if not np.all(sound):
+                row = int(np.argmin(sound))
+                message = f"sample {row + 1} of {signal.name!r} has the time {time[row]:g} s: it is damaged"
+                raise FileFormatError(message, "copy the whole file again", path=path)
+        values = samples.astype(np.float64)
+        invalid = signal.invalidation_bits
+        if invalid is not None and np.any(bad := np.asarray(invalid, dtype=bool)):
+            values[bad] = np.nan
+            count = np.count_nonzero(bad)
+            remarks.append(f"channel {signal.name!r}: {count} values marked as invalid read as missing")
+        found.append(raw_channel(signal.name, str(signal.unit or "").strip(), time, values))
+    return found
+
+
+def _is_nothing(channel: Any) -> bool:
+    """Return whether a channel takes no bits of a record and is not one that is computed from its number."""
+    return channel.bit_count == 0 and channel.channel_type not in VIRTUAL
+
+
+def _time_unit(channel: Any) -> str:
+    """Return the unit of a group's time, which the standard says is a second."""
+    return str(getattr(channel, "unit", "") or "").strip().lower() or "s"
+
+
+def _has_formula(conversion: Any, kind: int) -> bool:
+    """Return whether a conversion, or one that it refers to, is a formula: nothing of a file is evaluated."""
+    if conversion is None:
+        return False
+    if getattr(conversion, "conversion_type", None) == kind:
+        return True
+    inner = getattr(conversion, "referenced_blocks", None) or {}
+    return any(_has_formula(block, kind) for block in inner.values() if hasattr(block, "conversion_type"))
+
+
+def _with_names(found: list[tuple[str, RawChannel]], remarks: list[str]) -> list[RawChannel]:
+    repeated = Counter(channel.name for _, channel in found)
+    names, renamed = unique_names(
+        f"{group}/{channel.name}" if repeated[channel.name] > 1 else channel.name for group, channel in found
+    )
+    remarks += renamed
+    return [replace(channel, name=name) for name, (_, channel) in zip(names, found, strict=True)]

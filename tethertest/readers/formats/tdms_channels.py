@@ -11,14 +11,15 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import unique_names
-from tethertest.readers.formats.tdms_recordings import Recording, recordings
 from tethertest.readers.formats.tdms_time import (
     Clock,
     Key,
     Piece,
+    Recording,
     abscissa,
     clock_of,
     piecewise,
+    recordings,
     time_channel,
 )
 from tethertest.records.arrays import FloatArray

@@ -7,7 +7,7 @@ from typing import Any
 
 from nptdms import TdmsFile
 
-from tethertest.readers.formats.tdms_recordings import MEANING, TIME
+from tethertest.readers.formats.tdms_time import MEANING, TIME
 
 
 class FileWithHistory(TdmsFile):  # type: ignore[misc]

@@ -4,18 +4,41 @@ BIN := .venv/bin
 RUN ?= datasets/rig3m/run04
 JOBS ?= 2
 
-.PHONY: setup report test verify verify-logs verify-lines verify-rest bench stability lint schema
+.PHONY: setup setup-report lock report test verify verify-logs verify-lines verify-rest bench stability lint schema
 .DEFAULT_GOAL := report
 
-setup: .venv/.ready  ## a virtual environment with the tested versions
+# One environment that grows: a report needs few packages, tests and checks need more, both from locked files.
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps
+LOCKED := $(PIP) --only-binary :all: --require-hashes -r
+setup-report: .venv/.report
+setup: .venv/.ready
 
-.venv/.ready: requirements.lock pyproject.toml
+.venv/.report: requirements.lock pyproject.toml
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --editable .
+	$(LOCKED) requirements.lock
+	$(PIP) --no-build-isolation --editable .
 	touch $@
 
-report: setup  ## the main job on one run: reports/<run>/report.html
+.venv/.ready: requirements.lock requirements-dev.lock pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(LOCKED) requirements-dev.lock
+	$(PIP) --no-build-isolation --editable .
+	touch .venv/.report $@
+
+# Versions that are locked stay while they serve; `make lock UPGRADE=--upgrade` takes the newest.
+UV := .venv/lock/bin/uv
+COMPILE = $(UV) pip compile --quiet $(UPGRADE) --universal --python-version 3.11 --generate-hashes --no-annotate \
+	--no-emit-index-url --custom-compile-command "make lock" pyproject.toml --group build
+
+$(UV):
+	$(PYTHON) -m venv .venv/lock
+	.venv/lock/bin/python -m pip install --quiet --disable-pip-version-check uv==0.13.9
+
+lock: $(UV)  ## write requirements.lock (what a report needs) and requirements-dev.lock (tests and checks too)
+	$(COMPILE) --extra dev --output-file requirements-dev.lock
+	$(COMPILE) --constraints requirements-dev.lock --output-file requirements.lock
+
+report: setup-report  ## the main job on one run: reports/<run>/report.html
 	$(BIN)/tethertest report $(RUN)
 
 test: setup  ## the tests

@@ -8,7 +8,8 @@ JOBS ?= 2
 .DEFAULT_GOAL := report
 
 # One environment that grows: a report needs few packages, tests and checks need more, both from locked files.
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps
+# Modules are byte-compiled when they are first imported: most never are.
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-compile
 LOCKED := $(PIP) --only-binary :all: --require-hashes -r
 setup-report: .venv/.report
 setup: .venv/.ready

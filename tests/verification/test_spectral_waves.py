@@ -35,7 +35,8 @@ def bare_cable(mesh: SpectralMesh, d: int, drag: tuple[float, float] = (0.0, 0.0
     """Return a cable of EA = rl = 1 without gravity, in a wind of 5 m/s along the first axis."""
     wind = np.zeros(d)
     wind[0] = 5.0 if any(drag) else 0.0
-    arrays = (np.ascontiguousarray(mesh.derivative), mesh.points, mesh.integral, mesh.nodes)
+    derivative, integral = map(np.ascontiguousarray, (mesh.derivative, mesh.integral))
+    arrays = (derivative, mesh.points, integral, mesh.nodes)
     return SpectralCable(1.0, 1.0, 0.0, np.zeros(d), *drag, wind, *arrays)
 
 

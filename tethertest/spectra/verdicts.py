@@ -175,6 +175,11 @@ def _broken_order(evidence: Evidence) -> Judged:
         return LineVerdict.NOT_RESOLVABLE, _too_short(evidence, near)
     if not tracking.locked:
         return _free(evidence, tracking)
+    return _locked_order(evidence, tracking)
+
+
+def _locked_order(evidence: Evidence, tracking: Tracking) -> Judged:
+    """Go through what else than a subharmonic may be locked to the drive."""
     if evidence.local_p_value > LEAKAGE_CHANCE:
         return LineVerdict.LEAKAGE, _local(evidence)
     if not stands_out(evidence.amplitude.value, evidence.nearby_peak):

@@ -74,7 +74,7 @@ class SpectralMesh:
         element = np.clip((fraction * self.elements).astype(np.int64), 0, self.elements - 1)
         local = 2.0 * (fraction * self.elements - element) - 1.0
         modes = legendre.legvander(_points(), DEGREE)
-        return element, np.asarray(np.linalg.solve(modes.T, legendre.legvander(local, DEGREE).T).T)
+        return element, np.ascontiguousarray(np.linalg.solve(modes.T, legendre.legvander(local, DEGREE).T).T)
 
 
 @cache

@@ -4,7 +4,7 @@ BIN := .venv/bin
 RUN ?= datasets/rig3m/run04
 JOBS ?= 2
 
-.PHONY: setup setup-report lock report test verify verify-logs verify-lines verify-rest bench stability lint schema
+.PHONY: setup setup-report lock report test verify verify-logs verify-lines verify-rest bench stability mutants lint schema
 .DEFAULT_GOAL := report
 
 # One environment that grows: a report needs few packages, tests and checks need more, both from locked files.
@@ -73,6 +73,9 @@ bench: setup  ## writes reports/speed_vs_error; times whole processes and readin
 
 stability: setup  ## writes reports/stability: runs of a million steps
 	$(PROOF).stability -o reports/stability
+
+mutants: setup  ## faults put into the package one at a time: how many the tests notice
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m reports.mutants --jobs $(JOBS)
 
 lint: setup  ## style, types, layers
 	$(BIN)/ruff format --check

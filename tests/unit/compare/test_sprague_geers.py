@@ -61,3 +61,26 @@ def test_nothing_to_compare_is_said() -> None:
         sprague_geers(TIME, wavelet(0.14), np.zeros(TIME.size))
     with pytest.raises(DataError, match="no larger than its noise"):
         sprague_geers(TIME, wavelet(0.14), wavelet(0.14), noise_variance=10.0)
+
+
+def test_every_sample_weighs_half_the_steps_beside_it() -> None:
+    """By hand: steps 1 and 3 weigh the samples 0.5, 2 and 1.5."""
+    time, measured = np.array([0.0, 1.0, 4.0]), np.array([1.0, 2.0, 1.0])
+    found = sprague_geers(time, measured, np.array([2.0, 2.0, 0.0]))
+    # int m^2 = 0.5 + 8 + 1.5, int c^2 = 2 + 8, int m c = 1 + 8
+    assert found.magnitude == pytest.approx(0.0, abs=1e-12)
+    assert found.phase == pytest.approx(np.arccos(0.9) / np.pi)
+    without_last = sprague_geers(time, measured, np.array([2.0, 2.0, 0.0]), np.array([True, True, False]))
+    assert without_last.magnitude == pytest.approx(np.sqrt(4.0 / 2.5) - 1.0)
+    assert without_last.combined == pytest.approx(np.hypot(without_last.magnitude, without_last.phase))
+
+
+def test_noise_is_taken_off_over_the_time_that_counts() -> None:
+    time, ones = np.array([0.0, 1.0, 4.0]), np.ones(3)
+    # energy 4 less 0.19 x 4, and over the first second 1 less 0.19
+    assert sprague_geers(time, ones, ones, noise_variance=0.19).magnitude == pytest.approx(1.0 / 0.9 - 1.0)
+    first = np.array([True, True, False])
+    found = sprague_geers(time, ones, ones, first, noise_variance=0.19)
+    assert found.magnitude == pytest.approx(1.0 / 0.9 - 1.0)
+    with pytest.raises(DataError, match="no larger than its noise"):
+        sprague_geers(time, ones, ones, noise_variance=1.0)

@@ -71,7 +71,7 @@ def try_all(
         while waiting and len(running) < jobs:
             item = waiting.pop()
             receiver, sender = _FORK.Pipe(duplex=False)
-            process = _FORK.Process(
+            process: BaseProcess = _FORK.Process(
                 target=_test, args=(item, relevant_first(item, tests[item.package]), sender)
             )
             process.start()

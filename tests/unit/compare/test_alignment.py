@@ -81,6 +81,12 @@ def test_a_peak_is_the_largest_mean_over_20_ms_of_the_window_and_of_what_counts(
     found = pair_with(band, replayed)
     assert found is not None
     assert (found.measured_peak, found.replayed_peak) == pytest.approx((7.0, 14.0))
+    # of a bridge across samples that do not count only its ends are looked at: 5 N of 8 N
+    bridged = sampled(200.0, np.where((index >= 200) & (index <= 204), 8.0, 0.0))
+    bridged = bridged.with_flags((index > 200) & (index < 204), Flag.SATURATED)
+    across = prepare(bridged, Window(0.5, 1.5))
+    assert across is not None
+    assert across.peak == pytest.approx(5.0)
     flagged = channel.with_flags(index == 250, Flag.SATURATED)
     spoiled = flagged.with_values(np.where(index == 250, 99.0, values))
     again = prepare(spoiled, Window(0.5, 1.5))

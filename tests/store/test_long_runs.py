@@ -19,20 +19,19 @@ from tethertest.pipeline.ingest import ingest_run
 from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.gather import gathered
 from tethertest.pipeline.long_runs.ingest import Sources, ingest_long
-from tethertest.pipeline.long_runs.noise import quantum_of, white_noise_of
 from tethertest.pipeline.long_runs.record import record_of
 from tethertest.pipeline.stored import store_header
 from tethertest.readers import load_run
 from tethertest.records.channel import Channel, ConditionedRun, Flag, RawChannel, RawLog
 from tethertest.records.run import Run
-from tethertest.signal.noise import white_noise
+from tethertest.signal.noise import quantum_of, white_noise
 from tethertest.store import load_store
 
 ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "rigs"
 CAMPAIGN = ROOT / "datasets" / "rig3m"
 #: a campaign run takes some fifteen of these blocks
-TINY = Sizes(block=4096, context=1024, whole=20_000, thinned=1 << 40)
+TINY = Sizes(block=4096, whole=20_000, thinned=1 << 40)
 
 
 def pieces(log: RawLog, rows: int) -> Iterator[RawLog]:
@@ -142,7 +141,7 @@ def test_stamps_are_audited_as_in_memory(name: str, run: Path, tmp_path: Path) -
     values = np.random.default_rng(3).normal(size=time.size)
     loaded, raw = run_of_tensions(tmp_path, run, time, values)
     expected = audited_in_memory(time, raw, "daq")
-    sizes = Sizes(block=512, context=64, whole=1 << 20)
+    sizes = Sizes(block=512, whole=1 << 20)
     with Scratch(tmp_path) as scratch:
         log = gathered(pieces(raw, 700), loaded.file.log[0], loaded, scratch, lambda rows: None)
         record = record_of(log, scratch, sizes)
@@ -191,27 +190,21 @@ def test_plateaus_across_blocks_are_those_of_the_whole(kind: str, block: int) ->
     def read(start: int, stop: int) -> tuple[np.ndarray, np.ndarray]:
         return channel.time[start:stop], channel.values[start:stop]
 
-    def piece(start: int, stop: int) -> Channel:
-        time, values = read(start, stop)
-        return replace(channel, time=time, values=values, flags=channel.flags[start:stop])
-
     expected = with_plateaus_flagged(channel)
     found = plateaus_of(read, 20_000, block, kind)
     flags = np.concatenate(
-        [found.marked(piece(start, start + block), start).flags for start in range(0, 20_000, block)]
+        [found.flags(channel.values[start : start + block], start) for start in range(0, 20_000, block)]
     )
     assert np.array_equal(flags, expected.flags)
     assert (flags & Flag.STUCK).any()
     assert (flags & Flag.SATURATED).any() == (kind == "tension")
 
 
-def test_noise_in_pieces_is_that_of_the_whole() -> None:
+def test_the_step_that_a_long_record_is_rounded_to_is_seen_across_blocks() -> None:
     chance = np.random.default_rng(8)
-    values = chance.normal(0.0, 0.02, 300_000) + np.sin(np.arange(300_000) * 1e-3)
-    found = white_noise_of(lambda start, stop: values[start:stop], values.size, 1000)
-    assert found == pytest.approx(white_noise(values), rel=1e-3)
-    rounded = np.round(values, 1)
-    assert quantum_of(lambda start, stop: rounded[start:stop], rounded.size, 999) == pytest.approx(0.1)
+    rounded = np.round(chance.normal(0.0, 0.02, 600_000) + np.sin(np.arange(600_000) * 1e-3), 3)
+    assert quantum_of(lambda start, stop: rounded[start:stop], rounded.size) == pytest.approx(1e-3)
+    assert white_noise(rounded) == pytest.approx(0.02, rel=0.02)
 
 
 def test_a_full_disk_while_scratching_is_told_and_leaves_nothing(

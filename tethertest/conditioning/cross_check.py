@@ -11,6 +11,7 @@ from tethertest.conditioning.inertia import Inertia
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, Severity, Window
 from tethertest.records.rig import Rig
+from tethertest.signal.passes import BLOCK as SAMPLES
 
 #: both are compared as means over this time [s]: noise averages out and clocks need not agree to a sample
 BLOCK = 0.05
@@ -293,12 +294,19 @@ def _slope(x: FloatArray, y: FloatArray) -> float:
 
 def _blocks(channel: Channel, edges: FloatArray) -> FloatArray:
     """Return means over `BLOCK`, NaN where samples lack or may not be used: a clipped peak has no mean."""
-    inside = (channel.time >= edges[0]) & (channel.time < edges[-1])
-    number = np.searchsorted(edges, channel.time[inside], "right") - 1
-    usable = channel.usable[inside]
+    together = max(int(SAMPLES / (BLOCK * channel.rate)), 1)
+    parts = [edges[first : first + together + 1] for first in range(0, edges.size - 1, together)]
+    return np.concatenate([_block_means(channel, part) for part in parts])
+
+
+def _block_means(channel: Channel, edges: FloatArray) -> FloatArray:
+    first, last = np.searchsorted(channel.time, edges[[0, -1]])
+    part = channel.rows(int(first), int(last))
+    number = np.searchsorted(edges, part.time, "right") - 1
+    usable = part.usable
     count = np.bincount(number, minlength=edges.size - 1)
     spoilt = np.bincount(number, weights=~usable, minlength=edges.size - 1) > 0
-    values = np.where(usable, channel.values[inside], 0.0)
+    values = np.where(usable, part.values, 0.0)
     total = np.bincount(number, weights=values, minlength=edges.size - 1)
     enough = (count >= max(FULL_BLOCK * BLOCK * channel.rate, 1.0)) & ~spoilt
     return np.where(enough, total / np.maximum(count, 1), np.nan)

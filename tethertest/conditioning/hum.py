@@ -19,6 +19,8 @@ SIGNIFICANT = 4.0
 HARMFUL = 0.65
 #: width of the mains line within which the largest amplitude counts [Hz]
 LINE_WIDTH = 1.0
+#: samples of a window that are looked at
+MOST = 1 << 19
 
 
 def hum_amplitude(channel: Channel, mains: float, windows: Sequence[Window]) -> tuple[float, float]:
@@ -42,7 +44,7 @@ def hum_amplitude(channel: Channel, mains: float, windows: Sequence[Window]) -> 
     size = round(STRETCH * channel.rate)
     parts = [
         filled(part)
-        for part in (channel.between(item.start, item.stop) for item in windows)
+        for part in (channel.between(item.start, item.stop).rows(0, MOST) for item in windows)
         if part.usable.any()
     ]
     rows = [part[: part.size // size * size].reshape(-1, size) for part in parts if 0 < size <= part.size]

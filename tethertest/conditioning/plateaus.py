@@ -13,15 +13,16 @@ records, which have no noise, are taken like coarse digits.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from tethertest.conditioning.repeats import IntArray, Reader, Repeats, repeats_of
-from tethertest.records.arrays import BoolArray, FloatArray
+from tethertest.records.arrays import BoolArray, FlagArray, FloatArray
 from tethertest.records.channel import Channel, Flag
 from tethertest.signal.noise import quantum, white_noise
+from tethertest.signal.passes import BLOCK, blocks_of
 
 #: a stuck channel repeats its value at least this long [s]
 SHORTEST_STUCK = 0.5
@@ -57,12 +58,13 @@ class Plateaus:
     limits: FloatArray  #: values of the saturated runs: shorter touches are saturated too
     stuck: IntArray  #: (n, 2)
 
-    def marked(self, channel: Channel, start: int = 0) -> Channel:
-        """Return a part of the channel, from sample `start` on, with its flags."""
-        size = channel.values.size
-        saturated = _inside(self.saturated, start, size) | np.isin(channel.values, self.limits)
-        flagged = channel.with_flags(saturated, Flag.SATURATED)
-        return flagged.with_flags(_inside(self.stuck, start, size), Flag.STUCK)
+    def flags(self, values: FloatArray, start: int) -> FlagArray:
+        """Return the flags of some values of the channel, from sample `start` on."""
+        flags = np.zeros(values.size, dtype=np.uint16)
+        saturated = _inside(self.saturated, start, values.size) | np.isin(values, self.limits)
+        flags[saturated] = np.uint16(Flag.SATURATED)
+        flags[_inside(self.stuck, start, values.size)] |= np.uint16(Flag.STUCK)
+        return flags
 
 
 def with_plateaus_flagged(channel: Channel) -> Channel:
@@ -78,7 +80,13 @@ def with_plateaus_flagged(channel: Channel) -> Channel:
         return channel.time[start:stop], channel.values[start:stop]
 
     size = channel.time.size
-    return plateaus_of(read, size, size, channel.kind).marked(channel) if size > 1 else channel
+    if size < 2:
+        return channel
+    found = plateaus_of(read, size, BLOCK, channel.kind)
+    flags = channel.flags.copy()
+    for start, stop in blocks_of(size):
+        flags[start:stop] |= found.flags(channel.values[start:stop], start)
+    return replace(channel, flags=flags)
 
 
 def plateaus_of(read: Reader, size: int, block: int, kind: str) -> Plateaus:

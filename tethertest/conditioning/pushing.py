@@ -7,9 +7,11 @@ from typing import Final
 
 import numpy as np
 
+from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Finding, Severity
 from tethertest.records.rig import Rig
-from tethertest.signal.filters import filled
+from tethertest.signal.filters import filled_reader
+from tethertest.signal.passes import blocks_of
 
 #: standard uncertainty of a zero besides the channel's own: tare and drift of a cell for 100 N over a run [N]
 ZERO: Final = 0.03
@@ -37,18 +39,13 @@ def pushing_findings(channels: Sequence[Channel], rig: Rig) -> tuple[Finding, ..
             continue
         lightest = -weight * (1.0 - (channel.at or 0.0))
         limit = SIGMAS * float(np.hypot(ZERO, channel.offset_uncertainty))
-        values = filled(channel)
-        if not np.any(values < lightest - limit):
+        below, middles = _below(channel, lightest - limit)
+        edges = np.flatnonzero(np.diff(below, prepend=False, append=False)).reshape(-1, 2)
+        spans = [(a, b) for a, b in edges.tolist() if (b - a) / channel.rate >= LONGEST]
+        if not spans:
             continue
-        # a low-pass would ring below zero beside every snap
-        middle = median_filter(values, max(round(LONGEST * channel.rate), 1))
-        below = np.concatenate(([False], middle < lightest - limit, [False]))
-        starts, stops = np.flatnonzero(np.diff(below.astype(np.int8))).reshape(-1, 2).T
-        long = (stops - starts) / channel.rate >= LONGEST
-        if not np.any(long):
-            continue
-        spans = [(a, b) for a, b in zip(starts[long].tolist(), stops[long].tolist(), strict=True)]
-        lowest = min(float(np.min(middle[a:b])) for a, b in spans)
+        counts = np.cumsum(below)
+        lowest = min(float(np.min(middles[counts[a] - 1 : counts[b - 1]])) for a, b in spans)
         text = (
             f"down to {lowest:.3g} N in {len(spans)} spans, and a slack cable pushes with its weight at most "
             f"({lightest:.2g} N): the tension at rest (static_tension in the rig file) or the rest window is "
@@ -58,3 +55,22 @@ def pushing_findings(channels: Sequence[Channel], rig: Rig) -> tuple[Finding, ..
         count = sum(b - a for a, b in spans)
         found.append(Finding(channel.name, "negative_tension", text, Severity.FATAL, when, count))
     return tuple(found)
+
+
+def _below(channel: Channel, limit: float) -> tuple[BoolArray, FloatArray]:
+    """Return where the running median lies below a limit, and the medians there."""
+    read, size = filled_reader(channel), channel.time.size
+    # a low-pass would ring below zero beside every snap
+    length = max(round(LONGEST * channel.rate), 1)
+    below, medians = np.zeros(size, dtype=bool), [np.empty(0)]
+    for start, stop in blocks_of(size):
+        first = max(start - length, 0)
+        values = read(first, min(stop + length, size))
+        if not np.any(values < limit):
+            continue
+        from scipy.ndimage import median_filter  # a sound run does without its import
+
+        middle = median_filter(values, length)[start - first : stop - first]
+        below[start:stop] = middle < limit
+        medians.append(middle[below[start:stop]])
+    return below, np.concatenate(medians)

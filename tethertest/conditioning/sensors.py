@@ -21,8 +21,8 @@ from tethertest.conditioning.strain import (
 from tethertest.conditioning.tare import DEFAULT_RATED, STRAIN_DRIFT, TENSION_DRIFT, Level, rest_level, zeroed
 from tethertest.records.channel import Channel, Finding, Severity
 from tethertest.records.rig import Rig, Sensor
-from tethertest.signal.filters import filled, low_passed
-from tethertest.signal.noise import white_noise
+from tethertest.signal.filters import filled, filled_reader, low_passed
+from tethertest.signal.noise import white_noise_of
 
 #: the base stands in the same place before and after when it differs by less than this [m]: only then does a
 #: difference of tension at rest mean that a zero drifted
@@ -157,4 +157,4 @@ def _noise(channel: Channel) -> float:
     """Return the standard deviation of one sample; none for a temperature, which is smoothed."""
     if channel.kind == "temperature" or not channel.usable.any():
         return 0.0
-    return white_noise(filled(channel))
+    return white_noise_of(filled_reader(channel), channel.time.size)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Flag
-from tethertest.signal.noise import white_noise
+from tethertest.signal.filters import bridged_reader
+from tethertest.signal.noise import white_noise_of
+from tethertest.signal.passes import blocks_of
 
 #: longest spike [s]; a snap takes about 10 ms to rise
 LONGEST = 0.003
@@ -34,54 +37,127 @@ APART = 0.3
 WAVE_DELAY = 0.008
 #: height of the other channel's answer, in standard deviations of one of its samples
 ANSWER_SIGMAS = 6.0
+#: rows on either side of a part that decide about its own samples: a delay at 100 kHz, and what is far around
+CONTEXT = 1 << 12
 
 
-def with_spikes_flagged(
-    channels: Sequence[Channel], sigmas: Sequence[float] | None = None
-) -> tuple[Channel, ...]:
+@dataclass(frozen=True, slots=True, eq=False)
+class SpikeRule:
+    """What the whole record says of its spikes: looked for in a part of it with `CONTEXT` rows around."""
+
+    sigma: float  #: standard deviation of one sample
+    dropouts: FloatArray  #: values that a logger writes for a lost sample
+
+    @classmethod
+    def of(cls, read: Callable[[int, int], FloatArray], size: int, rate: float) -> SpikeRule:
+        """Return the rule of a record.
+
+        Parameters
+        ----------
+        read : callable
+            Its values (n,) from first to last + 1, straight across holes.
+        size : int
+            Its samples.
+        rate : float
+            Its rate [Hz].
+        """
+        sigma = white_noise_of(read, size)
+        longest = _longest(rate)
+        if size < _shortest(longest) or sigma == 0.0:
+            return cls(sigma, np.zeros(0))
+        return cls(sigma, _dropouts(read, size, HEIGHT_SIGMAS * sigma, longest))
+
+    def spikes(self, part: Channel, others: Iterable[tuple[Channel, float]]) -> BoolArray:
+        """Return which samples of a part stand alone.
+
+        Parameters
+        ----------
+        part : Channel
+            Some samples of the record.
+        others : iterable of (Channel, float)
+            Channels of the same kind on the same clock over the same time, each with its own sigma: what
+            they show too is no spike.
+        """
+        values = _without_holes(part)
+        spike = _standing_alone(part, values, self.sigma)
+        if self.dropouts.size:
+            spike |= np.isin(values, self.dropouts)
+        if spike.any():
+            spike &= ~_beside(~part.usable)
+        for other, sigma in others:
+            if spike.any():
+                spike &= ~_answered(part, values, spike, other, sigma)
+        return spike
+
+
+def with_spikes_flagged(channels: Sequence[Channel]) -> tuple[Channel, ...]:
     """Return the channels of one clock with `Flag.SPIKE` where a sample stands alone.
 
     Parameters
     ----------
     channels : sequence of Channel
         Channels that see the same cable; what more than one of them shows within a wave's delay is kept.
-    sigmas : sequence of float, optional
-        Standard deviation of one sample of each, where the channels are only a part of the record.
 
     Returns
     -------
     tuple of Channel
         The same channels, in the same order.
     """
-    values = [_without_holes(channel) for channel in channels]
-    sigmas = [white_noise(item) for item in values] if sigmas is None else sigmas
-    answers = [
-        _answers(channel, item, sigma) for channel, item, sigma in zip(channels, values, sigmas, strict=True)
-    ]
+    rules = [_rule(channel) for channel in channels]
     result: list[Channel] = []
-    for number, channel in enumerate(channels):
-        spike = _spikes(channel, values[number], sigmas[number])
-        for other, (times, signs) in enumerate(answers):
-            if other != number and channels[other].kind == channel.kind and spike.any():
-                spike &= ~_answered(channel, values[number], spike, times, signs)
-        result.append(channel.with_flags(spike, Flag.SPIKE))
+    for channel, rule in zip(channels, rules, strict=True):
+        others = [
+            (other, its_rule.sigma)
+            for other, its_rule in zip(channels, rules, strict=True)
+            if other is not channel and other.kind == channel.kind
+        ]
+        flags = channel.flags.copy()
+        for start, stop in blocks_of(channel.time.size):
+            first = max(start - CONTEXT, 0)
+            part = channel.rows(first, stop + CONTEXT)
+            near = ((_around(other, part), sigma) for other, sigma in others)
+            spike = rule.spikes(part, near)[start - first : stop - first]
+            flags[start:stop][spike] |= np.uint16(Flag.SPIKE)
+        result.append(replace(channel, flags=flags))
     return tuple(result)
+
+
+def _rule(channel: Channel) -> SpikeRule:
+    known = np.isfinite(channel.values)
+    if not known.any():
+        return SpikeRule(0.0, np.zeros(0))
+    return SpikeRule.of(bridged_reader(channel.time, channel.values, known), channel.time.size, channel.rate)
+
+
+def _around(other: Channel, part: Channel) -> Channel:
+    """Return what another channel shows while a part lasts, and a little longer."""
+    first, last = np.searchsorted(other.time, part.time[[0, -1]])
+    return other.rows(max(int(first) - CONTEXT, 0), int(last) + CONTEXT)
+
+
+def _longest(rate: float) -> int:
+    return min(max(int(LONGEST * rate + 1e-9), 1), LONGEST_SAMPLES)
+
+
+def _shortest(longest: int) -> int:
+    """Return the samples below which a record has too few neighbours."""
+    return 2 * (AROUND + longest)
 
 
 def _height(values: FloatArray, width: int) -> FloatArray:
     """Return how far the mean of `width` samples from each index on lies from the mean of its neighbours."""
-    total = np.concatenate(([0.0], np.cumsum(values - values[0])))
-    block = (total[width:] - total[:-width]) / width + values[0]
     height = np.zeros(values.size)
     stop = values.size - width
-    height[1:stop] = block[1:stop] - 0.5 * (values[: stop - 1] + values[width + 1 : stop + width])
+    if stop > 1:
+        block = sum(values[1 + place : stop + place] for place in range(width)) / width
+        height[1:stop] = block - 0.5 * (values[: stop - 1] + values[width + 1 : stop + width])
     return height
 
 
-def _spikes(channel: Channel, values: FloatArray, sigma: float) -> BoolArray:
+def _standing_alone(part: Channel, values: FloatArray, sigma: float) -> BoolArray:
     spike = np.zeros(values.size, dtype=bool)
-    longest = min(max(int(LONGEST * channel.rate + 1e-9), 1), LONGEST_SAMPLES)
-    if values.size < 2 * (AROUND + longest) or sigma == 0.0:
+    longest = _longest(part.rate)
+    if values.size < _shortest(longest) or sigma == 0.0:
         return spike
     for width in range(1, longest + 1):
         height = _height(values, width)
@@ -89,28 +165,48 @@ def _spikes(channel: Channel, values: FloatArray, sigma: float) -> BoolArray:
             block = slice(int(start), int(start) + width)
             if not spike[block].any() and _stands_alone(values, height, int(start), width):
                 spike[block] = True
-    return (spike | _dropouts(values, HEIGHT_SIGMAS * sigma, longest)) & ~_beside(~channel.usable)
+    return spike
 
 
-def _dropouts(values: FloatArray, least: float, longest: int) -> BoolArray:
-    """Return the samples of one value that stands apart again and again, beyond all that the signal reaches.
+def _dropouts(read: Callable[[int, int], FloatArray], size: int, least: float, longest: int) -> FloatArray:
+    """Return the values that stand apart again and again, beyond all that the signal reaches.
 
     A logger that loses samples now and then writes the same number for each, often zero. Many of them hide
     one another from a look at how high such heights are around.
     """
+
+    def blocks() -> Iterator[tuple[FloatArray, BoolArray]]:
+        for start, stop in blocks_of(size):
+            first = max(start - CONTEXT, 0)
+            values = read(first, min(stop + CONTEXT, size))
+            inside = slice(start - first, stop - first)
+            yield values[inside], _repeated_alone(values, least, longest)[inside]
+
+    alone = [values[dropout] for values, dropout in blocks()]
+    numbers, counts = np.unique(np.concatenate(alone), return_counts=True)
+    numbers = numbers[counts >= FEWEST_DROPOUTS]
+    if not numbers.size:
+        return np.zeros(0)
+    low, high = np.inf, -np.inf
+    for values, dropout in blocks():
+        rest = values[~dropout & ~np.isin(values, numbers)]
+        if rest.size:
+            low, high = min(low, float(np.min(rest))), max(high, float(np.max(rest)))
+    if low > high:
+        return np.zeros(0)
+    margin = APART * (high - low)
+    beyond: FloatArray = numbers[(numbers < low - margin) | (numbers > high + margin)]
+    return beyond
+
+
+def _repeated_alone(values: FloatArray, least: float, longest: int) -> BoolArray:
+    """Return the samples of high blocks of one value."""
     dropout = np.zeros(values.size, dtype=bool)
     for width in range(1, longest + 1):
         for start in np.flatnonzero(_likely(values, _height(values, width), least, width)).tolist():
             block = values[start : start + width]
             dropout[start : start + width] |= bool(np.all(block == block[0]))
-    numbers, counts = np.unique(values[dropout], return_counts=True)
-    numbers = numbers[counts >= FEWEST_DROPOUTS]
-    rest = values[~dropout & ~np.isin(values, numbers)]
-    if not numbers.size or not rest.size:
-        return np.zeros(values.size, dtype=bool)
-    margin = APART * float(np.max(rest) - np.min(rest))
-    beyond = (numbers < np.min(rest) - margin) | (numbers > np.max(rest) + margin)
-    return np.asarray(np.isin(values, numbers[beyond]), dtype=bool)
+    return dropout
 
 
 def _likely(values: FloatArray, height: FloatArray, least: float, width: int) -> BoolArray:
@@ -162,20 +258,14 @@ def _stands_alone(values: FloatArray, height: FloatArray, start: int, width: int
     return bool(own > ISOLATION * float(np.quantile(wide, FAR_QUANTILE)))
 
 
-def _answers(channel: Channel, values: FloatArray, sigma: float) -> tuple[FloatArray, FloatArray]:
-    """Return times and signs of all samples that stand out, spike or not."""
-    height = _height(values, 1)
-    out = np.flatnonzero((np.abs(height) > ANSWER_SIGMAS * sigma) & channel.usable)
-    return channel.time[out], np.sign(height[out])
-
-
-def _answered(
-    channel: Channel, values: FloatArray, spike: BoolArray, times: FloatArray, signs: FloatArray
-) -> BoolArray:
-    height = _height(values, 1)
-    reach = max(WAVE_DELAY, 1.5 / channel.rate)
+def _answered(part: Channel, values: FloatArray, spike: BoolArray, other: Channel, sigma: float) -> BoolArray:
+    """Return which spikes another channel shows as well, within a wave's delay and to the same side."""
+    reach = max(WAVE_DELAY, 1.5 / part.rate)
+    height, its_height = _height(values, 1), _height(_without_holes(other), 1)
+    out = (np.abs(its_height) > ANSWER_SIGMAS * sigma) & other.usable
     answered = np.zeros(spike.size, dtype=bool)
     for row in np.flatnonzero(spike):
-        first, last = np.searchsorted(times, (channel.time[row] - reach, channel.time[row] + reach))
-        answered[row] = bool(np.any(signs[first:last] == np.sign(height[row])))
+        first, last = np.searchsorted(other.time, (part.time[row] - reach, part.time[row] + reach))
+        same = np.sign(its_height[first:last]) == np.sign(height[row])
+        answered[row] = bool(np.any(same & out[first:last]))
     return answered

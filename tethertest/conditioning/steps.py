@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Flag
-from tethertest.signal.filters import filled
-from tethertest.signal.noise import white_noise
+from tethertest.signal.filters import filled_reader
+from tethertest.signal.noise import white_noise_of
+from tethertest.signal.passes import blocks_of
 
 #: height of the edge, in standard deviations of one sample
 HEIGHT_SIGMAS = 12.0
@@ -17,6 +18,8 @@ HEIGHT_SIGMAS = 12.0
 ISOLATION = 3.0
 #: samples on either side that are looked at for that, and that make up the level beside the edge
 AROUND, BESIDE = 10, 3
+#: rows beside a block that decide about its own
+CONTEXT = 2 * AROUND
 #: levels beside the edge differ by this share of it: at a spike they do not
 STAYS_NEAR = 0.7
 #: the difference to the other load cell changes by this share of the edge beside it (within the first time),
@@ -48,15 +51,19 @@ def with_steps_flagged(channels: Sequence[Channel]) -> tuple[Channel, ...]:
 
 
 def _steps(channel: Channel, others: Sequence[Channel]) -> BoolArray:
-    found = np.zeros(channel.time.size, dtype=bool)
-    values = filled(channel)
-    sigma = white_noise(values)
-    if sigma == 0.0 or values.size < 4 * AROUND:
+    size = channel.time.size
+    found = np.zeros(size, dtype=bool)
+    read, usable = filled_reader(channel), channel.usable
+    sigma = white_noise_of(read, size)
+    if sigma == 0.0 or size < 4 * AROUND:
         return found
-    edge = np.diff(values)
-    for row in _alone(values, edge, sigma, channel.usable).tolist():
-        if _stays(channel, values, others, row, float(edge[row])):
-            found[row + 1] = True
+    for start, stop in blocks_of(size):
+        first, last = max(start - CONTEXT, 0), min(stop + CONTEXT, size)
+        values = read(first, last)
+        edge = np.diff(values)
+        for row in _alone(values, edge, sigma, usable[first:last]).tolist():
+            if start <= first + row < stop and _stays(channel, read, others, first + row, float(edge[row])):
+                found[first + row + 1] = True
     return found
 
 
@@ -76,11 +83,17 @@ def _alone(values: FloatArray, edge: FloatArray, sigma: float, usable: BoolArray
     return alone
 
 
-def _stays(channel: Channel, values: FloatArray, others: Sequence[Channel], row: int, height: float) -> bool:
+def _stays(
+    channel: Channel,
+    read: Callable[[int, int], FloatArray],
+    others: Sequence[Channel],
+    row: int,
+    height: float,
+) -> bool:
     """Return whether the new level stays, against the other load cells where there are any."""
     near, far = (max(round(length * channel.rate), AROUND) for length in (NEAR_TIME, FAR_TIME))
-    first, last = max(row + 1 - far, 0), min(row + 1 + far, values.size)
-    time, own = channel.time[first:last], values[first:last]
+    first, last = max(row + 1 - far, 0), min(row + 1 + far, channel.time.size)
+    time, own = channel.time[first:last], read(first, last)
     here = row + 1 - first
     if here < AROUND or own.size - here < AROUND:
         return False
@@ -88,12 +101,19 @@ def _stays(channel: Channel, values: FloatArray, others: Sequence[Channel], row:
     if not others:
         return bool(_jump(own[beside], min(here, near)) / height > STAYS)
     for other in others:
-        apart = own - np.interp(time, other.time, filled(other))
+        apart = own - _values_at(other, time)
         if _level_change(apart[beside], min(here, near)) / height < STAYS:
             return False
         if abs(_level_change(apart, here) / height - 1.0) > SAME_HEIGHT:
             return False
     return True
+
+
+def _values_at(other: Channel, time: FloatArray) -> FloatArray:
+    """Return another channel's values at some times, straight across what is not usable."""
+    first, last = np.searchsorted(other.time, time[[0, -1]])
+    first, last = max(int(first) - 1, 0), min(int(last) + 1, other.time.size)
+    return np.interp(time, other.time[first:last], filled_reader(other)(first, last))
 
 
 def _level_change(values: FloatArray, here: int) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 
 from tethertest.records.channel import Channel, Finding, Flag, Severity, Window
 from tethertest.signal.noise import MAD_TO_SIGMA
+from tethertest.signal.passes import blocks_of
 
 #: the level at rest is the median of means over this time: taps and ringing above 10 Hz average out [s]
 BLOCK = 0.25
@@ -90,7 +91,10 @@ def zeroed(
     drift = after.value - before.value if before is not None and after is not None else 0.0
     elapsed = after.time - before.time if before is not None and after is not None else 1.0
     offset = level.value - expected
-    line = offset + drift * (channel.time - level.time) / elapsed
+    values = np.empty(channel.time.size)
+    for first, last in blocks_of(values.size):
+        line = offset + drift * (channel.time[first:last] - level.time) / elapsed
+        values[first:last] = channel.values[first:last] - line
     step = (
         f"zero offset {offset:.6g} {channel.unit} (+/- {level.error:.2g}) taken out, rest at {expected:.6g}; "
         f"drift {drift:+.3g} {channel.unit} over {elapsed:.4g} s taken out as a straight line"
@@ -98,7 +102,7 @@ def zeroed(
     # that a drift was straight is not known: at worst all of it came at once, half of it either way
     unknown = np.hypot(level.error, drift / np.sqrt(12.0))
     changed = replace(
-        channel.with_values(channel.values - line, step),
+        channel.with_values(values, step),
         offset_uncertainty=float(np.hypot(channel.offset_uncertainty, unknown)),
     )
     if abs(drift) <= allowed_drift:

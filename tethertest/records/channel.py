@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Protocol
 import numpy as np
 
 from tethertest.errors import DataError
-from tethertest.records.arrays import BoolArray, FlagArray, FloatArray, frozen
+from tethertest.records.arrays import BoolArray, FlagArray, FloatArray, frozen, increases
 from tethertest.records.described import Doc
 from tethertest.records.frames import drawn, series, table
 from tethertest.signal.series import sampling_interval
@@ -181,7 +181,7 @@ class Channel:
                 f"{self.flags.shape} must be 1-D and equally long"
             )
             raise ValueError(message)
-        if self.time.size > 1 and not np.all(np.diff(self.time) > 0):
+        if not increases(self.time):
             message = f"channel {self.name!r}: time does not increase"
             raise DataError(message, "rebuild the clock before making a channel")
         object.__setattr__(self, "time", frozen(self.time))
@@ -219,9 +219,12 @@ class Channel:
 
     def between(self, start: float, stop: float) -> Channel:
         """Return the part with ``start <= time <= stop``."""
-        part = slice(
-            int(np.searchsorted(self.time, start, "left")), int(np.searchsorted(self.time, stop, "right"))
-        )
+        first, last = np.searchsorted(self.time, start, "left"), np.searchsorted(self.time, stop, "right")
+        return self.rows(int(first), int(last))
+
+    def rows(self, start: int, stop: int) -> Channel:
+        """Return the samples from number `start` up to and without number `stop`."""
+        part = slice(start, stop)
         return replace(self, time=self.time[part], values=self.values[part], flags=self.flags[part])
 
     def with_values(self, values: FloatArray, step: str | None = None, *, unit: str | None = None) -> Channel:
@@ -231,8 +234,9 @@ class Channel:
 
     def with_flags(self, where: BoolArray, flag: Flag) -> Channel:
         """Return a channel with `flag` added where the mask is true."""
-        flags = self.flags | np.where(where, np.uint16(flag), np.uint16(0))
-        return replace(self, flags=flags.astype(np.uint16))
+        flags = self.flags.copy()
+        flags[where] |= np.uint16(flag)
+        return replace(self, flags=flags)
 
     def with_step(self, step: str) -> Channel:
         """Return a channel with one more conditioning step on record."""

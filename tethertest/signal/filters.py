@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from tethertest.errors import DataError
-from tethertest.signal.series import Floats, Series
+from tethertest.signal.series import Booleans, Floats, Series
 
 Number = TypeVar("Number", np.float64, np.complex128)
 
@@ -42,9 +43,60 @@ def filled(series: Series) -> Floats:
     if usable.all():
         return series.values
     if not usable.any():
-        message = "a channel has no usable sample"
-        raise DataError(message, "leave the channel out of run.toml or export the log again")
+        raise _nothing_usable()
     return np.interp(series.time, series.time[usable], series.values[usable])
+
+
+def _nothing_usable() -> DataError:
+    message = "a channel has no usable sample"
+    return DataError(message, "leave the channel out of run.toml or export the log again")
+
+
+def filled_reader(series: Series) -> Callable[[int, int], Floats]:
+    """Return a function that gives what `filled` makes of some rows, without a copy of the others.
+
+    Parameters
+    ----------
+    series : Series
+        A channel.
+
+    Returns
+    -------
+    callable
+        First row, and last + 1 -> their values (n,).
+
+    Raises
+    ------
+    DataError
+        No sample is usable.
+    """
+    usable = series.usable
+    if not usable.any():
+        raise _nothing_usable()
+    return bridged_reader(series.time, series.values, usable)
+
+
+def bridged_reader(time: Floats, values: Floats, known: Booleans) -> Callable[[int, int], Floats]:
+    """Return a function that gives some rows of a record, with straight lines across what is not known.
+
+    Parameters
+    ----------
+    time, values : ndarray
+        (n,)
+    known : (n,) bool
+        At least one is.
+    """
+
+    def read(start: int, stop: int) -> Floats:
+        if known[start:stop].all():
+            return values[start:stop]
+        before, after = known[:start][::-1], known[stop:]
+        first = start - 1 - int(np.argmax(before)) if before.any() else start
+        last = stop + 1 + int(np.argmax(after)) if after.any() else stop
+        rows = first + np.flatnonzero(known[first:last])
+        return np.interp(time[start:stop], time[rows], values[rows])
+
+    return read
 
 
 def low_passed(values: Floats, rate: float, cutoff: float) -> Floats:

@@ -7,6 +7,8 @@ from typing import Final, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from tethertest.signal.passes import BLOCK, blocks_of
+
 Floats: TypeAlias = npt.NDArray[np.float64]
 Booleans: TypeAlias = npt.NDArray[np.bool_]
 
@@ -45,7 +47,18 @@ def sampling_interval(time: Floats) -> float:
     time : (n,) float64
         Increasing [s], two or more.
     """
-    steps = np.diff(time)
-    median = float(np.median(steps))
-    usual = steps[np.abs(steps - median) <= _GAP * median]
-    return float(np.mean(usual)) if usual.size else median
+    median = float(np.median(_some_steps(time)))
+    total, count = 0.0, 0
+    for start, stop in blocks_of(time.size - 1):
+        steps = np.diff(time[start : stop + 1])
+        usual = steps[np.abs(steps - median) <= _GAP * median]
+        total, count = total + float(np.sum(usual)), count + usual.size
+    return total / count if count else median
+
+
+def _some_steps(time: Floats) -> Floats:
+    """Return all steps between stamps, or as many of a long record as make a block."""
+    if time.size - 1 <= BLOCK:
+        return np.diff(time)
+    rows = np.linspace(0, time.size - 2, BLOCK).astype(np.intp)
+    return np.asarray(time[rows + 1] - time[rows])

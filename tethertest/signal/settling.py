@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tethertest.signal.filters import filled, moving_mean
+from tethertest.signal.filters import moving_mean
 from tethertest.signal.series import Series
+from tethertest.signal.thinning import evenly
 from tethertest.signal.windows import Steady
 
 #: orders of the drive that are followed
@@ -37,9 +38,7 @@ def settled_from(response: Series, steady: Steady) -> Steady:
     """
     if steady.cycles < FEWEST_CYCLES or not response.usable.any():
         return steady
-    rate = response.rate
-    time = np.arange(steady.span[0], steady.span[1], 1.0 / rate)
-    values = np.interp(time, response.time, filled(response))
+    time, values, rate = evenly(response, steady.span, steady.frequency)
     values = values - values.mean()
     length = CYCLES_AVERAGED / steady.frequency * rate
     late = time > steady.span[0] + LARGEST_CUT * (steady.span[1] - steady.span[0])

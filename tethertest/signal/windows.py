@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tethertest.signal.filters import filled, moving_mean
-from tethertest.signal.noise import white_noise
+from tethertest.signal.filters import filled_reader, moving_mean
+from tethertest.signal.noise import white_noise, white_noise_of
 from tethertest.signal.series import Booleans, Floats, Series
+from tethertest.signal.thinning import evenly, means_of
 
 Span = tuple[float, float]
 
@@ -139,11 +140,10 @@ def find_steady(series: Series, frequency: float) -> Steady | None:
     Steady or None
         None where no stretch of `FEWEST_CYCLES` cycles has settled amplitude and speed.
     """
-    rate = series.rate
-    time = np.arange(series.time[0], series.time[-1], 1.0 / rate)
-    if time.size < 2 or (time[-1] - time[0]) * frequency < FEWEST_CYCLES:
+    span = (float(series.time[0]), float(series.time[-1]))
+    if (span[1] - span[0]) * frequency < FEWEST_CYCLES:
         return None
-    values = np.interp(time, series.time, filled(series))
+    time, values, rate = evenly(series, span, frequency)
     noise = white_noise(values)
     found = _peak_frequency(values - values.mean(), rate, frequency)
     return _settled_stretch(time, values, rate, frequency, found, noise) or _repeating_stretch(
@@ -251,12 +251,10 @@ def _settled(
 
 def _thinned(series: Series) -> tuple[Floats, Floats, float]:
     """Return times and means of blocks of `BLOCK` seconds, and the standard deviation of such a mean."""
-    values = filled(series)
+    read = filled_reader(series)
     size = max(round(BLOCK * series.rate), 1)
-    count = max(values.size // size, 1)
-    means = values[: count * size].reshape(count, -1).mean(axis=1)
-    centres = series.time[: count * size].reshape(count, -1).mean(axis=1)
-    return centres, means, white_noise(values) / np.sqrt(size)
+    centres, means = means_of(series.time, read, size)
+    return centres, means, white_noise_of(read, series.time.size) / np.sqrt(size)
 
 
 def _moving_median(values: Floats, length: int) -> Floats:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import tempfile
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +19,6 @@ class Sizes:
     """How much is held in memory at once."""
 
     block: int = 1 << 18  #: rows
-    context: int = 1 << 12  #: rows on either side of a block that its flags may need
     whole: int = 1 << 20  #: rows of one column up to which a statistic takes it whole
     thinned: int = 1 << 20  #: numbers of the thinned copy, over all its columns
 
@@ -96,12 +94,6 @@ class Column:
         self._file.seek(start * self._dtype.itemsize)
         content = self._file.read(max(stop - start, 0) * self._dtype.itemsize)
         return np.frombuffer(content, dtype=self._dtype)
-
-
-def blocks(rows: int, size: int) -> Iterator[tuple[int, int]]:
-    """Yield first and last + 1 row of every block."""
-    for start in range(0, rows, size):
-        yield start, min(start + size, rows)
 
 
 def no_scratch(folder: Path, error: OSError) -> TethertestError:

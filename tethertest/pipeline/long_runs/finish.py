@@ -17,12 +17,13 @@ from tethertest.conditioning.flags import (
 )
 from tethertest.conditioning.plausible import hole_findings
 from tethertest.conditioning.rest import RunWindows
-from tethertest.pipeline.long_runs.columns import Sizes, blocks
-from tethertest.pipeline.long_runs.noise import white_noise_of
+from tethertest.pipeline.long_runs.columns import Sizes
 from tethertest.pipeline.long_runs.rest import Zeroed
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, Flag, Severity
 from tethertest.records.run import Run
+from tethertest.signal.noise import white_noise_of
+from tethertest.signal.passes import blocks_of
 from tethertest.store.write import StoreWriter
 
 
@@ -70,7 +71,7 @@ class Final:
                 return np.zeros(part.values.size)
             return np.interp(part.time, part.time[usable], part.values[usable])
 
-        return replace(self._sensor.about, noise=white_noise_of(values, self.rows, self._sizes.whole))
+        return replace(self._sensor.about, noise=white_noise_of(values, self.rows))
 
     def note(self, channel: Channel) -> None:
         """Note what a block holds; blocks come in their order, each once."""
@@ -155,7 +156,7 @@ def final_channels(
             final = finals[sensor.name]
             about = final.about()
             series = store.channel(sensor.name)
-            for start, stop in blocks(final.rows, final.block):
+            for start, stop in blocks_of(final.rows, final.block):
                 channel = final.channel(start, stop)
                 final.note(channel)
                 series.append(channel.time, channel.values, channel.flags)

@@ -10,13 +10,13 @@ import numpy as np
 from tethertest.conditioning.flags import sensor_of
 from tethertest.conditioning.load_cells import calibrated
 from tethertest.conditioning.plateaus import Plateaus, plateaus_of
-from tethertest.conditioning.spikes import with_spikes_flagged
-from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes, blocks
-from tethertest.pipeline.long_runs.noise import white_noise_of
+from tethertest.conditioning.spikes import CONTEXT, SpikeRule
+from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.record import Record
 from tethertest.records.arrays import FloatArray
-from tethertest.records.channel import Channel, Finding, RawChannel, RawLog
+from tethertest.records.channel import Channel, Finding, Flag, RawChannel, RawLog
 from tethertest.records.run import Run
+from tethertest.signal.passes import blocks_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,18 +59,25 @@ def flagged(
     """
     count = len(record.log.pairings)
     plateaus = [_plateaus(record, number, sizes) for number in range(count)]
-    sigmas = [_sigma(record, number, run, sizes) for number in range(count)]
+    rules = [_spike_rule(record, number, run) for number in range(count)]
     columns = tuple(scratch.column("<u2") for _ in range(count))
     findings: dict[tuple[str, str], Finding] = {}
-    for start, stop in blocks(record.rows, sizes.block):
-        first = max(start - sizes.context, 0)
-        channels = []
-        for number, logged in enumerate(record.channels(first, stop + sizes.context)):
-            channel, found = _calibrated(plateaus[number].marked(logged, first), run)
-            channels.append(channel)
+    for start, stop in blocks_of(record.rows, sizes.block):
+        first = max(start - CONTEXT, 0)
+        parts = []
+        for number, logged in enumerate(record.channels(first, stop + CONTEXT)):
+            level = replace(logged, flags=logged.flags | plateaus[number].flags(logged.values, first))
+            channel, found = _calibrated(level, run)
+            parts.append(channel)
             findings |= {(item.subject, item.kind): item for item in found}
-        for column, channel in zip(columns, with_spikes_flagged(channels, sigmas), strict=True):
-            column.append(channel.flags[start - first : stop - first])
+        for number, (column, part) in enumerate(zip(columns, parts, strict=True)):
+            others = [
+                (other, rule.sigma)
+                for other, rule in zip(parts, rules, strict=True)
+                if other is not part and other.kind == part.kind
+            ]
+            marked = part.with_flags(rules[number].spikes(part, others), Flag.SPIKE)
+            column.append(marked.flags[start - first : stop - first])
         progress(stop)
     return Flagged(record, run, columns, tuple(findings.values()))
 
@@ -91,7 +98,7 @@ def thinned(log: Flagged, factor: int, sizes: Sizes) -> RawLog:
     times: list[FloatArray] = []
     values: list[list[FloatArray]] = [[] for _ in log.flags]
     block = max(sizes.block // factor, 1) * factor
-    for start, stop in blocks(record.rows // factor * factor, block):
+    for start, stop in blocks_of(record.rows // factor * factor, block):
         times.append(record.time(start, stop).reshape(-1, factor).mean(axis=1))
         for number, channel in enumerate(record.channels(start, stop)):
             usable = replace(channel, flags=log.flags[number].read(start, stop)).usable
@@ -120,13 +127,11 @@ def _plateaus(record: Record, number: int, sizes: Sizes) -> Plateaus:
     return plateaus_of(read, record.rows, sizes.block, record.channels(0, 1)[number].kind)
 
 
-def _sigma(record: Record, number: int, run: Run, sizes: Sizes) -> float:
-    """Return the noise of one sample, as calibrated."""
-
+def _spike_rule(record: Record, number: int, run: Run) -> SpikeRule:
     def values(start: int, stop: int) -> FloatArray:
         return _without_holes(_calibrated(record.channels(start, stop)[number], run)[0])
 
-    return white_noise_of(values, record.rows, sizes.whole)
+    return SpikeRule.of(values, record.rows, 1.0 / record.stamps.step)
 
 
 def _calibrated(channel: Channel, run: Run) -> tuple[Channel, tuple[Finding, ...]]:

@@ -10,6 +10,7 @@ from tethertest.conditioning import condition
 from tethertest.conditioning.condition import mapped_finding
 from tethertest.conditioning.plausible import check_rate
 from tethertest.conditioning.rest import RunWindows
+from tethertest.conditioning.spikes import CONTEXT
 from tethertest.errors import DataError
 from tethertest.pipeline.evaluation import rig_guide
 from tethertest.pipeline.long_runs.columns import Scratch, Sizes, no_scratch
@@ -133,7 +134,7 @@ def _gathered(
     log = gathered(pieces, entry, run, scratch, lambda rows: progress(f"{entry.file}: {rows} rows", None))
     progress(f"{entry.file}: stamps", None)
     record = record_of(log, scratch, sizes)
-    for channel in record.channels(0, sizes.context):
+    for channel in record.channels(0, CONTEXT):
         check_rate(channel, run.rig)
     words = f"{entry.file}: flags"
     progress(f"{entry.file}: noise and plateaus", None)

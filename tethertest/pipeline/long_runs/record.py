@@ -9,11 +9,12 @@ import numpy as np
 
 from tethertest.conditioning.jumps import NEAR, SHORTEST_JUMP, SIDE, without_jumps
 from tethertest.conditioning.mapping import Pairing
-from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes, blocks
+from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.gather import Gathered
 from tethertest.pipeline.long_runs.stamps import Audited, audited
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, Flag, Source
+from tethertest.signal.passes import blocks_of
 
 
 @dataclass(slots=True, eq=False)
@@ -126,7 +127,7 @@ def record_of(log: Gathered, scratch: Scratch, sizes: Sizes) -> Record:
 def _kept(column: Column, kept: Column, scratch: Scratch, sizes: Sizes) -> Column:
     """Return a column without the rows that are dropped."""
     shorter = scratch.column(column.dtype)
-    for start, stop in blocks(column.size, sizes.block):
+    for start, stop in blocks_of(column.size, sizes.block):
         shorter.append(column.read(start, stop)[kept.read(start, stop)])
     return shorter
 
@@ -134,7 +135,7 @@ def _kept(column: Column, kept: Column, scratch: Scratch, sizes: Sizes) -> Colum
 def _gaps(record: Record) -> list[int]:
     """Return the rows with a gap before them."""
     found: list[int] = []
-    for start, stop in blocks(record.rows, record.sizes.block):
+    for start, stop in blocks_of(record.rows, record.sizes.block):
         flags = record.columns[1].read(start, stop)
         found += (start + np.flatnonzero(flags & np.uint16(Flag.GAP))).tolist()
     return found

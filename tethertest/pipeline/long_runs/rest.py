@@ -14,10 +14,11 @@ from tethertest.conditioning.guide import Guide
 from tethertest.conditioning.hum import with_hum_flagged
 from tethertest.conditioning.rest import RunWindows
 from tethertest.conditioning.sensors import finished
-from tethertest.pipeline.long_runs.columns import Sizes, blocks
+from tethertest.pipeline.long_runs.columns import Sizes
 from tethertest.pipeline.long_runs.flagging import Flagged
 from tethertest.records.channel import Channel, ClockFit, Finding, Flag, Window
 from tethertest.records.rig import Rig, sensor_noise
+from tethertest.signal.passes import blocks_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,7 +134,7 @@ def _thinned(
     parts: list[Channel] = []
     block = max(sizes.block // factor, 1) * factor
     for first, last in ranges:
-        for start, stop in blocks(last - first, block):
+        for start, stop in blocks_of(last - first, block):
             part = log.channel(number, first + start, first + stop)
             parts.append(part if factor == 1 else _means(part, factor))
     if not parts:

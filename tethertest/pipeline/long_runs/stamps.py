@@ -25,10 +25,11 @@ from tethertest.conditioning.stamps import (
     rebuilt_words,
 )
 from tethertest.errors import DataError
-from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes, blocks
+from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.gather import Gathered
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Finding, Flag
+from tethertest.signal.passes import blocks_of
 
 #: rows of one piece of a sample of steps, and pieces of it
 _PIECE, _PIECES = 1 << 14, 64
@@ -114,7 +115,7 @@ def _median_step(log: Gathered, sizes: Sizes) -> float:
 
 def _seen(log: Gathered, median: float, sizes: Sizes) -> _Seen:
     seen = _Seen()
-    for start, stop in blocks(log.rows, sizes.block):
+    for start, stop in blocks_of(log.rows, sizes.block):
         time = log.time.read(start - 1, stop)
         if not np.isfinite(time).all():
             message = f"the log is larger than is read at once, and rows from {start + 1} on have no stamp"
@@ -146,7 +147,7 @@ def _plain(
     spans: list[tuple[float, float]] = []
     stood = dropped = 0
     before = -np.inf  # stamp of the latest row that was kept
-    for start, stop in blocks(log.rows, sizes.block):
+    for start, stop in blocks_of(log.rows, sizes.block):
         raw = log.time.read(start - 1, stop + 1) + log.start
         lead = 1 if start else 0
         time = raw[lead : lead + stop - start].copy()
@@ -224,7 +225,7 @@ def _stretches(
 ) -> Iterator[tuple[npt.NDArray[np.int64], FloatArray, FloatArray, FloatArray]]:
     """Yield the number of the stretch, row, stamp and step of each row, block by block."""
     number = 0
-    for start, stop in blocks(log.rows, sizes.block):
+    for start, stop in blocks_of(log.rows, sizes.block):
         time = log.time.read(start - 1, stop) + log.start
         step = np.diff(time) if start else np.concatenate(([np.inf], np.diff(time)))
         gaps = step > longest

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tethertest.conditioning.stamps import audited
+from tethertest.conditioning.stamps import audit_stamps
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, RawLog
 from tethertest.units import Kind
@@ -56,7 +56,7 @@ class Sampling:
         elif stamps != "exact":
             quantum = 1e-3 * float(stamps.split(maxsplit=1)[0])
             reading = np.floor(reading / quantum) * quantum
-        result = audited(reading, RawLog(Path("log.csv"), "study", None, ()), "clock")
+        result = audit_stamps(reading, RawLog(Path("log.csv"), "study", None, ()), "clock")
         self.time = result.time
         self.true = true[result.rows]
         self._flags = result.flags

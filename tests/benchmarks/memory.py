@@ -93,7 +93,7 @@ def write_run(folder: Path, size: float) -> int:
 def arguments(command: str, folder: Path, out: Path) -> list[str]:
     """Return the command line on a run folder."""
     given = [item.format(folder=folder, log=folder / "tension.csv", out=out) for item in COMMANDS[command]]
-    return [*given, "--rigs", str(ROOT / "rigs")] if "{folder}" in " ".join(COMMANDS[command]) else given
+    return [*given, "--rigs", str(ROOT / "rigs")] if str(folder) in given else given
 
 
 def peak_of(command: Sequence[str], words: str = "") -> tuple[int, float]:

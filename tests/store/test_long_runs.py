@@ -12,7 +12,7 @@ import pytest
 
 from tethertest.conditioning import condition
 from tethertest.conditioning.plateaus import plateaus_of, with_plateaus_flagged
-from tethertest.conditioning.stamps import audited as audited_in_memory
+from tethertest.conditioning.stamps import audit_stamps
 from tethertest.errors import DataError, TethertestError
 from tethertest.pipeline.evaluation import read_logs, rig_guide
 from tethertest.pipeline.ingest import ingest_run
@@ -140,7 +140,7 @@ def test_stamps_are_audited_as_in_memory(name: str, run: Path, tmp_path: Path) -
     time = STAMPS[name](np.arange(9000) * 0.002)
     values = np.random.default_rng(3).normal(size=time.size)
     loaded, raw = run_of_tensions(tmp_path, run, time, values)
-    expected = audited_in_memory(time, raw, "daq")
+    expected = audit_stamps(time, raw, "daq")
     sizes = Sizes(block=512, whole=1 << 20)
     with Scratch(tmp_path) as scratch:
         log = gathered(pieces(raw, 700), loaded.file.log[0], loaded, scratch, lambda rows: None)
@@ -167,7 +167,7 @@ def test_what_takes_the_whole_record_is_refused_with_a_remedy(run: Path, tmp_pat
         with Scratch(tmp_path) as scratch:
             log = gathered(pieces(raw, 700), loaded.file.log[0], loaded, scratch, lambda rows: None)
             with pytest.raises(DataError, match=said) as refused:
-                record_of(log, scratch, Sizes(block=512))
+                record_of(log, scratch, Sizes(block=512, whole=4096))
         assert refused.value.remedy
 
 

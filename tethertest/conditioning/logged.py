@@ -11,7 +11,7 @@ import numpy as np
 from tethertest.conditioning.gratings import assigned
 from tethertest.conditioning.jumps import without_jumps
 from tethertest.conditioning.mapping import Pairing, is_grating, paired
-from tethertest.conditioning.stamps import Stamps, audited
+from tethertest.conditioning.stamps import Stamps, audit_stamps
 from tethertest.conditioning.starts import start_after
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, Flag, RawLog, Severity, Source
@@ -55,7 +55,8 @@ def as_logged(raw: RawLog, entry: Log, run: Run) -> LoggedChannels:
     ]
     channels: list[Channel] = []
     for group in with_same_times(pairings, lambda pairing: pairing.raw.time):
-        stamps = audited(group[0].raw.time + start, raw, entry.clock)
+        logged = group[0].raw.time
+        stamps = audit_stamps(logged + start if start else logged, raw, entry.clock)
         found += stamps.findings
         columns = [_column(pairing, stamps, raw, entry) for pairing in group]
         optical = [pairing.sensor is None or is_grating(pairing.sensor) for pairing in group]
@@ -87,10 +88,12 @@ def _column(pairing: Pairing, stamps: Stamps, raw: RawLog, entry: Log) -> Channe
     if pairing.raw.as_written is not None and (pairing.sensor is None or is_grating(pairing.sensor)):
         # the rig knows its gratings better than the reader, who had to learn them from the log
         logged, told = pairing.raw.as_written, None
-    values = scale.factor * logged[stamps.rows] + scale.offset
-    missing = np.where(np.isfinite(values), np.uint16(0), np.uint16(Flag.MISSING))
+    values = scale.factor * logged[stamps.rows]
+    values += scale.offset
+    flags = stamps.flags.copy()
+    flags[~np.isfinite(values)] |= np.uint16(Flag.MISSING)
     if told is not None:
-        missing |= told[stamps.rows]
+        flags |= told[stamps.rows]
     sensor = pairing.sensor
     source = Source(
         raw.path.name,
@@ -106,7 +109,7 @@ def _column(pairing: Pairing, stamps: Stamps, raw: RawLog, entry: Log) -> Channe
         scale.unit,
         stamps.time,
         values,
-        (stamps.flags | missing).astype(np.uint16),
+        flags,
         None if sensor is None else sensor.at,
         source=source,
     )

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from tethertest.conditioning.stamp_steps import GAP_STEPS, Quantised, Steps, even_rows, steps_of
+from tethertest.conditioning.stamp_steps import (
+    DUPLICATE_FRACTION,
+    GAP_STEPS,
+    EvenRows,
+    Quantised,
+    StampReader,
+    Stepping,
+    reader_of,
+    stepping_of,
+)
 from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray, FlagArray, FloatArray
 from tethertest.records.channel import Finding, Flag, RawLog, Severity
+from tethertest.signal.passes import BLOCK, blocks_of
 
 #: a step back by more than this fraction of the median step is an unsorted log, by less it is jitter
 BACKWARD_FRACTION = 0.5
@@ -26,13 +38,44 @@ class Stamps:
     """Audited stamps of one log."""
 
     time: FloatArray  #: (n,) [s], strictly increasing
-    rows: BoolArray  #: (rows of the log,) True for the n rows that are kept
+    rows: BoolArray | slice  #: of the log: which of them are the n rows that are kept
     flags: FlagArray  #: (n,)
     findings: tuple[Finding, ...]  #: spans on the log's own clock
     steps: tuple[str, ...]  #: for the record
 
 
-def audited(time: FloatArray, raw: RawLog, clock: str) -> Stamps:
+@dataclass(frozen=True, slots=True, eq=False)
+class StampBlock:
+    """Audited stamps of some consecutive rows."""
+
+    time: FloatArray  #: (n,) [s] of the rows that are kept
+    rows: BoolArray | None  #: (rows of the block,) True for those; None where all are kept
+    flags: FlagArray  #: (n,)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StampAudit:
+    """What the stamps of a log are like, and how each block of them is mended."""
+
+    step: float  #: usual step of the mended stamps [s]
+    mended: bool  #: whether any stamp is not as it was logged
+    findings: tuple[Finding, ...]  #: spans on the log's own clock
+    steps: tuple[str, ...]  #: for the record
+    mend: Callable[[], Iterator[StampBlock]]  #: without flags of gaps
+
+    def blocks(self) -> Iterator[StampBlock]:
+        """Yield all stamps in their order, with their flags."""
+        before = None
+        for part in self.mend():
+            if part.time.size:
+                first = part.time[0] if before is None else before
+                gap = np.diff(part.time, prepend=first) > GAP_STEPS * self.step
+                part.flags[gap] |= np.uint16(Flag.GAP)
+                before = float(part.time[-1])
+            yield part
+
+
+def audit_stamps(time: FloatArray, raw: RawLog, clock: str) -> Stamps:
     """Audit one column of stamps.
 
     Parameters
@@ -55,45 +98,152 @@ def audited(time: FloatArray, raw: RawLog, clock: str) -> Stamps:
     DataError
         Fewer than two rows, stamps that are missing, or time that goes backwards.
     """
-    if time.size < 2:
-        message = f"the log has {time.size} rows, expected a record"
-        raise DataError(message, "export the log again", path=raw.path)
-    missing = ~np.isfinite(time)
-    findings: list[Finding] = []
-    if missing.any():
-        time = _interpolated(time, missing, raw)
-        text = f"{raw.path.name}: {np.count_nonzero(missing)} rows have no stamp; interpolated by row"
-        findings.append(Finding(clock, "missing_time", text, samples=int(np.count_nonzero(missing))))
-    seen = steps_of(time)
-    median, duplicate, backward = seen.median, seen.duplicate, seen.backward
-    _check_order(time, np.diff(time), median, raw)
-    flags = np.where(missing, np.uint16(Flag.MISSING), np.uint16(0)).astype(np.uint16)
-    flags[duplicate & ~backward] |= np.uint16(Flag.DUPLICATE_TIME)
-    flags[backward] |= np.uint16(Flag.BACKWARD_TIME)
+    audit = audit_of(reader_of(time), time.size, raw, clock)
+    flags = np.empty(time.size, dtype=np.uint16)
     rows = np.ones(time.size, dtype=bool)
-    steps: list[str] = []
-    if seen.coarse or seen.quantised or backward.any() or seen.jitter > JITTER_FRACTION * median:
-        kind, words = irregularity(seen.quantised, median, seen.jitter, coarse=seen.coarse)
-        rebuilt = _rebuilt(time, seen)
-        if rebuilt is None:
-            rebuilt = _spread(time)
+    mended = np.empty(time.size) if audit.mended else time
+    row = kept = 0
+    for part in audit.blocks():
+        size = part.time.size
+        flags[kept : kept + size] = part.flags
+        if audit.mended:
+            mended[kept : kept + size] = part.time
+        if part.rows is not None:
+            rows[row : row + part.rows.size] = part.rows
+        row, kept = row + (size if part.rows is None else part.rows.size), kept + size
+    chosen = slice(None) if kept == time.size else rows
+    return Stamps(mended[:kept], chosen, flags[:kept], audit.findings, audit.steps)
+
+
+def audit_of(
+    read: StampReader, size: int, raw: RawLog, clock: str, block: int = BLOCK, most: int = sys.maxsize
+) -> StampAudit:
+    """Audit the stamps of a record that need not be in memory; see `audit_stamps`.
+
+    Parameters
+    ----------
+    read : callable
+        The stamps, as logged; some may be NaN.
+    size, block : int
+        Rows, and rows at once.
+    raw, clock
+        As for `audit_stamps`.
+    most : int
+        Rows up to which a fault is mended that takes all stamps at once.
+
+    Raises
+    ------
+    DataError
+        As `audit_stamps`, or a log of more rows than `most` whose stamps are missing, or repeat where rows
+        are missing too.
+    """
+    if size < 2:
+        message = f"the log has {size} rows, expected a record"
+        raise DataError(message, "export the log again", path=raw.path)
+    missing = _missing(read, size, block)
+    findings: list[Finding] = []
+    if missing is not None:
+        count = int(np.count_nonzero(missing))
+        if size > most:
+            raise _too_long(raw, f"{count} of its rows have no stamp")
+        read = reader_of(_interpolated(read(0, size), missing, raw))
+        text = f"{raw.path.name}: {count} rows have no stamp; interpolated by row"
+        findings.append(Finding(clock, "missing_time", text, samples=count))
+    seen = stepping_of(read, size, block)
+    _check_order(read, size, block, seen.median, raw)
+    told = _Told(read, size, block, seen, missing)
+    if seen.coarse or seen.quantised or seen.backward or seen.jitter > JITTER_FRACTION * seen.median:
+        kind, words = irregularity(seen.quantised, seen.median, seen.jitter, coarse=seen.coarse)
+        even = EvenRows.of(read, size, rebuild_gap(seen.median, seen.quantised), block)
+        away = _strays(even)
+        if away <= REBUILD_STEPS * seen.median:
+            text, severity = rebuilt_words(words, away, seen.quantised)
+            step, mend = even.step, lambda: told.rebuilt(rows for _, _, rows in even.blocks())
+        elif size > most:
+            raise _too_long(raw, "its stamps repeat or jitter where rows are missing too")
+        else:
+            spread = _spread(read(0, size))
             text = f"{words}, and rows are missing: stamps that repeat are spread evenly, true to {words}"
             severity = Severity.WARNING
-        else:
-            away = float(np.max(np.abs(rebuilt - time)))
-            text, severity = rebuilt_words(words, away, seen.quantised)
+            step = float(np.median(np.diff(spread)))
+            mend = lambda: told.rebuilt(spread[start:stop] for start, stop in blocks_of(size, block))  # noqa: E731
         findings.append(Finding(clock, kind, f"{raw.path.name}: {text}", severity))
-        steps.append(text)
-        time, duplicate = rebuilt, np.zeros_like(duplicate)
-    elif duplicate.any():
-        time, rows, finding = _without_repeats(time, duplicate, median, raw, clock)
-        findings.append(finding)
-        steps.append(finding.text)
-    time, flags = time[rows], flags[rows]
-    step = np.diff(time)
-    gap = np.concatenate(([False], step > GAP_STEPS * float(np.median(step))))
-    flags[gap] |= np.uint16(Flag.GAP)
-    return Stamps(time, rows, flags, tuple(findings), tuple(steps))
+        return StampAudit(step, True, tuple(findings), (text,), mend)
+    if not seen.duplicates:
+        return StampAudit(seen.median, missing is not None, tuple(findings), (), told.as_logged)
+    found = _repeats_finding(told, raw, clock)
+    return StampAudit(seen.median, True, (*findings, found), (found.text,), told.without_repeats)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Told:
+    """Stamps as logged, with what is known of their steps."""
+
+    read: StampReader
+    size: int
+    block: int
+    seen: Stepping
+    missing: BoolArray | None
+
+    def _flags(self, start: int, stop: int) -> FlagArray:
+        """Return the flags that stamps have as logged."""
+        flags = np.zeros(stop - start, dtype=np.uint16)
+        step = np.diff(self.read(max(start - 1, 0), stop))
+        inside = flags if start else flags[1:]
+        inside[step <= DUPLICATE_FRACTION * self.seen.median] = np.uint16(Flag.DUPLICATE_TIME)
+        inside[step < 0] = np.uint16(Flag.BACKWARD_TIME)
+        if self.missing is not None:
+            flags[self.missing[start:stop]] |= np.uint16(Flag.MISSING)
+        return flags
+
+    def as_logged(self) -> Iterator[StampBlock]:
+        """Yield the stamps as they are."""
+        for start, stop in blocks_of(self.size, self.block):
+            yield StampBlock(self.read(start, stop), None, self._flags(start, stop))
+
+    def rebuilt(self, times: Iterator[FloatArray]) -> Iterator[StampBlock]:
+        """Yield other times for all rows."""
+        for (start, stop), time in zip(blocks_of(self.size, self.block), times, strict=True):
+            yield StampBlock(time, None, self._flags(start, stop))
+
+    def repeats(self) -> Iterator[tuple[FloatArray, BoolArray, list[tuple[float, bool]]]]:
+        """Yield mended stamps, rows that are kept, and stamp and whether it stood still of each repeat."""
+        before = 0.0
+        for start, stop in blocks_of(self.size, self.block):
+            logged = self.read(start, min(stop + 1, self.size))
+            time, kept = logged[: stop - start].copy(), np.ones(stop - start, dtype=bool)
+            found = []
+            for row in np.flatnonzero(self._flags(start, stop) & np.uint16(Flag.DUPLICATE_TIME)).tolist():
+                following = logged[row + 1] - logged[row] if row + 1 < logged.size else 0.0
+                stood = bool(following > GAP_STEPS * self.seen.median)
+                found.append((float(time[row]), stood))
+                if stood:
+                    time[row] = (time[row - 1] if row else before) + 0.5 * following
+                else:
+                    kept[row] = False
+            before = float(time[-1])
+            yield time, kept, found
+
+    def without_repeats(self) -> Iterator[StampBlock]:
+        """Give a stamp that stood still its own time; drop a row that was written twice."""
+        start = 0
+        for time, kept, _ in self.repeats():
+            flags = self._flags(start, start + time.size)
+            start += time.size
+            yield StampBlock(time[kept], kept, flags[kept])
+
+
+def _missing(read: StampReader, size: int, block: int) -> BoolArray | None:
+    """Return which rows have no stamp; None where all have one."""
+    if all(np.isfinite(read(start, stop)).all() for start, stop in blocks_of(size, block)):
+        return None
+    return np.concatenate([~np.isfinite(read(start, stop)) for start, stop in blocks_of(size, block)])
+
+
+def _too_long(raw: RawLog, why: str) -> DataError:
+    message = f"the log is larger than is read at once, and {why}"
+    remedy = "export it again with all of its stamps, as fine as the rows are, or in parts"
+    return DataError(message, remedy, path=raw.path)
 
 
 def _interpolated(time: FloatArray, missing: BoolArray, raw: RawLog) -> FloatArray:
@@ -104,16 +254,22 @@ def _interpolated(time: FloatArray, missing: BoolArray, raw: RawLog) -> FloatArr
     return np.asarray(np.interp(row, row[~missing], time[~missing]), dtype=np.float64)
 
 
-def _check_order(time: FloatArray, step: FloatArray, median: float, raw: RawLog) -> None:
-    back = np.flatnonzero(step < -BACKWARD_FRACTION * median)
+def _check_order(read: StampReader, size: int, block: int, median: float, raw: RawLog) -> None:
     if median == 0.0:
         message = "no stamp is later than the one before it"
         raise DataError(message, "export the log again with its time column", path=raw.path)
-    if back.size:
-        row = int(back[0]) + 1
-        more = f", and {back.size - 1} more times" if back.size > 1 else ""
+    count, row, pair = 0, 0, (0.0, 0.0)
+    for start, stop in blocks_of(size - 1, block):
+        time = read(start, stop + 1)
+        back = np.flatnonzero(np.diff(time) < -BACKWARD_FRACTION * median)
+        if back.size and not count:
+            row = start + int(back[0]) + 1
+            pair = (float(time[back[0]]), float(time[back[0] + 1]))
+        count += back.size
+    if count:
+        more = f", and {count - 1} more times" if count > 1 else ""
         message = (
-            f"time goes backwards at row {row + 1} ({time[row]:.6g} s after {time[row - 1]:.6g} s, "
+            f"time goes backwards at row {row + 1} ({pair[1]:.6g} s after {pair[0]:.6g} s, "
             f"from the run's date{more})"
         )
         remedy = "export the log again, sorted by time"
@@ -166,12 +322,14 @@ def rebuild_gap(median: float, quantised: Quantised | None) -> float:
     return REBUILD_GAP_STEPS * median if quantised is None else quantised.longest
 
 
-def _rebuilt(time: FloatArray, seen: Steps) -> FloatArray | None:
-    """Return uniform time through the stamps between gaps, or None where that strays too far."""
-    slope, even = even_rows(time, rebuild_gap(seen.median, seen.quantised))
-    if slope <= 0 or np.max(np.abs(even - time)) > REBUILD_STEPS * seen.median or np.any(np.diff(even) <= 0):
-        return None
-    return even
+def _strays(even: EvenRows) -> float:
+    """Return the farthest even time from its stamp [s]; infinite where even times do not increase."""
+    away, before = 0.0, -np.inf
+    for _, time, rows in even.blocks():
+        if even.step <= 0 or np.any(np.diff(rows, prepend=before) <= 0):
+            return np.inf
+        away, before = max(away, float(np.max(np.abs(rows - time)))), float(rows[-1])
+    return away
 
 
 def _spread(time: FloatArray) -> FloatArray:
@@ -186,24 +344,9 @@ def _spread(time: FloatArray) -> FloatArray:
     return np.asarray(np.interp(row, anchors.astype(float), ends), dtype=np.float64)
 
 
-def _without_repeats(
-    time: FloatArray, duplicate: BoolArray, median: float, raw: RawLog, clock: str
-) -> tuple[FloatArray, BoolArray, Finding]:
-    """Give a stamp that stood still its own time; drop a row that was written twice."""
-    rows = np.ones(time.size, dtype=bool)
-    time = time.copy()
-    spans: list[tuple[float, float]] = []
-    stood = 0
-    for row in np.flatnonzero(duplicate):
-        following = time[row + 1] - time[row] if row + 1 < time.size else 0.0
-        spans.append((float(time[row]), float(time[row])))
-        if following > GAP_STEPS * median:
-            time[row] = time[row - 1] + 0.5 * following
-            stood += 1
-        else:
-            rows[row] = False
-    dropped = int(np.count_nonzero(~rows))
-    words = f"{stood} stamps stood still and were moved, {dropped} rows came twice and count once"
-    text = f"{raw.path.name}: {words}"
-    finding = Finding(clock, "duplicate_time", text, spans=tuple(spans), samples=len(spans))
-    return time, rows, finding
+def _repeats_finding(told: _Told, raw: RawLog, clock: str) -> Finding:
+    found = [item for _, _, items in told.repeats() for item in items]
+    stood = sum(stood for _, stood in found)
+    words = f"{stood} stamps stood still and were moved, {len(found) - stood} rows came twice and count once"
+    spans = tuple((stamp, stamp) for stamp, _ in found)
+    return Finding(clock, "duplicate_time", f"{raw.path.name}: {words}", spans=spans, samples=len(spans))

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from tethertest.conditioning.stamp_steps import even_rows, quantised_steps
+from tethertest.conditioning.stamp_steps import EvenRows, quantised_steps, reader_of
 from tethertest.conditioning.stamps import irregularity
 from tethertest.errors import DataError, QuantityError
 from tethertest.pipeline.read_bare import read_bare
@@ -201,10 +201,11 @@ def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
         remarks.append(f"channel {raw.name!r}: {text}; the empty rows are no holes")
         kept = kept[slower]
     time = raw.time[kept]
-    quantised = quantised_steps(time)
+    quantised = quantised_steps(reader_of(time), time.size)
     steps = np.diff(time)
     if quantised is not None:
-        _, time = even_rows(time, quantised.longest)
+        even = EvenRows.of(reader_of(time), time.size, quantised.longest)
+        time = np.concatenate([rows for _, _, rows in even.blocks()])
         _, words = irregularity(quantised, 0.0, 0.0, coarse=False)
         remarks.append(f"channel {raw.name!r}: {words}: its time is rebuilt from the rows")
     elif steps.size > 1:

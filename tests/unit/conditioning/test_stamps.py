@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tethertest.conditioning.stamps import audited
+from tethertest.conditioning.stamps import audit_stamps
 from tethertest.conditioning.starts import start_after
 from tethertest.errors import DataError
 from tethertest.records.channel import Flag, RawLog
@@ -22,7 +22,7 @@ def log(start: dt.datetime | None = None) -> RawLog:
 
 def test_clean_stamps_stay_as_they_are():
     time = 0.3 + np.arange(500) * 0.01
-    stamps = audited(time, log(), "interrogator")
+    stamps = audit_stamps(time, log(), "interrogator")
     np.testing.assert_array_equal(stamps.time, time)
     assert stamps.findings == ()
     assert not stamps.flags.any()
@@ -34,12 +34,12 @@ def test_time_going_backwards_names_line_and_values():
     with pytest.raises(
         DataError, match=r"run07/fbg.txt:118: time goes backwards at row 108 \(0.9 s after 1.06 s"
     ):
-        audited(time, log(), "interrogator")
+        audit_stamps(time, log(), "interrogator")
 
 
 def test_coarse_stamps_are_rebuilt_from_rows():
     true = np.arange(2000) * 0.01
-    stamps = audited(np.floor(true / 0.0125) * 0.0125, log(), "interrogator")
+    stamps = audit_stamps(np.floor(true / 0.0125) * 0.0125, log(), "interrogator")
     assert [(item.kind, item.severity) for item in stamps.findings] == [("quantised_time", "note")]
     assert np.ptp(stamps.time - true) < 1e-4
     assert np.max(np.abs(stamps.time - true)) < 0.0125
@@ -50,7 +50,7 @@ def test_coarse_stamps_are_rebuilt_from_rows():
 def test_stamps_cut_to_nearly_a_step_are_no_gaps(rate, decimals):
     """Rows every 17.3 ms with stamps of 12.5 ms: 12.5 ms or 25 ms apart, once taken for 80 Hz with losses."""
     true = np.delete(np.arange(3000) / rate, slice(1200, 1300))
-    stamps = audited(np.round(np.floor(true / 0.0125) * 0.0125, decimals), log(), "interrogator")
+    stamps = audit_stamps(np.round(np.floor(true / 0.0125) * 0.0125, decimals), log(), "interrogator")
     assert [item.kind for item in stamps.findings] == ["quantised_time"]
     assert "cut to 12.5 ms" in stamps.findings[0].text
     off = stamps.time - true
@@ -61,7 +61,7 @@ def test_stamps_cut_to_nearly_a_step_are_no_gaps(rate, decimals):
 
 def test_every_fifth_row_missing_looks_like_stamps_that_are_cut_and_both_are_said():
     time = np.arange(2000) * 0.0125
-    stamps = audited(time[np.arange(2000) % 5 != 4], log(), "interrogator")
+    stamps = audit_stamps(time[np.arange(2000) % 5 != 4], log(), "interrogator")
     assert [(item.kind, item.severity) for item in stamps.findings] == [("quantised_time", "warning")]
     assert "rows every 12.5 ms, some missing in a pattern of 4, look the same" in stamps.findings[0].text
 
@@ -69,9 +69,9 @@ def test_every_fifth_row_missing_looks_like_stamps_that_are_cut_and_both_are_sai
 def test_a_pattern_of_stamps_goes_on_behind_a_gap():
     """60 Hz with stamps of 10 ms: 10 ms, 20 ms and 20 ms apart, over and over."""
     true = np.delete(np.arange(3000) / 60.0, slice(1200, 1300))
-    stamps = audited(np.floor(true / 0.01 + 1e-9) * 0.01, log(), "interrogator")
+    stamps = audit_stamps(np.floor(true / 0.01 + 1e-9) * 0.01, log(), "interrogator")
     assert "some missing in a pattern of 3, look the same" in stamps.findings[0].text
-    stamps = audited(np.floor(true / 0.01001) * 0.01001, log(), "interrogator")
+    stamps = audit_stamps(np.floor(true / 0.01001) * 0.01001, log(), "interrogator")
     assert "look the same" not in stamps.findings[0].text
 
 
@@ -81,7 +81,7 @@ def test_rows_lost_by_chance_are_gaps(share, seed):
     random = np.random.default_rng([seed, round(100 * share)])
     time = np.arange(3000) * 0.0125
     kept = random.random(3000) >= share
-    stamps = audited(time[kept], log(), "interrogator")
+    stamps = audit_stamps(time[kept], log(), "interrogator")
     np.testing.assert_array_equal(stamps.time, time[kept])
     if share < 0.5:  # else neighbours are no longer the usual case
         gaps = np.flatnonzero(np.diff(time[kept]) > 0.02) + 1
@@ -91,7 +91,7 @@ def test_rows_lost_by_chance_are_gaps(share, seed):
 def test_jitter_is_rebuilt_on_both_sides_of_a_gap():
     random = np.random.default_rng(4)
     true = np.delete(np.arange(2000) * 0.01, slice(900, 950))
-    stamps = audited(true + random.uniform(-0.001, 0.001, true.size), log(), "interrogator")
+    stamps = audit_stamps(true + random.uniform(-0.001, 0.001, true.size), log(), "interrogator")
     assert [item.kind for item in stamps.findings] == ["jitter"]
     assert np.max(np.abs(stamps.time - true)) < 2e-4
     assert np.flatnonzero(stamps.flags & np.uint16(Flag.GAP)).tolist() == [900]
@@ -101,7 +101,7 @@ def test_stamp_that_stood_still_moves_and_row_written_twice_counts_once():
     time = np.arange(1000) * 0.01
     time[300] = time[299]
     time = np.insert(time, 700, time[699])
-    stamps = audited(time, log(), "interrogator")
+    stamps = audit_stamps(time, log(), "interrogator")
     np.testing.assert_allclose(stamps.time, np.arange(1000) * 0.01, atol=1e-12)
     assert np.flatnonzero(~stamps.rows).tolist() == [700]
     assert [item.kind for item in stamps.findings] == ["duplicate_time"]

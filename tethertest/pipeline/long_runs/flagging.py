@@ -131,7 +131,7 @@ def _spike_rule(record: Record, number: int, run: Run) -> SpikeRule:
     def values(start: int, stop: int) -> FloatArray:
         return _without_holes(_calibrated(record.channels(start, stop)[number], run)[0])
 
-    return SpikeRule.of(values, record.rows, 1.0 / record.stamps.step)
+    return SpikeRule.of(values, record.rows, 1.0 / record.step)
 
 
 def _calibrated(channel: Channel, run: Run) -> tuple[Channel, tuple[Finding, ...]]:

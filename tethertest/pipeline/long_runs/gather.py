@@ -11,6 +11,7 @@ from tethertest.conditioning.mapping import Pairing, paired
 from tethertest.conditioning.starts import start_after
 from tethertest.errors import DataError
 from tethertest.pipeline.long_runs.columns import Column, Scratch
+from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Finding, RawLog, Severity
 from tethertest.records.run import Log, Run
 
@@ -34,6 +35,10 @@ class Gathered:
     def rows(self) -> int:
         """Rows of the log."""
         return self.time.size
+
+    def stamps(self, start: int, stop: int) -> FloatArray:
+        """Return the stamps of some rows as logged [s], after the run's date."""
+        return np.asarray(self.time.read(start, stop) + self.start)
 
 
 def gathered(

@@ -157,7 +157,7 @@ def _thin(run: Run, logs: Mapping[str, Flagged], sizes: Sizes) -> tuple[dict[str
             remedy = "set [override.clock_offset] for the other clocks, or split the run"
             raise DataError(message, remedy, path=record.log.raw.path)
         factors[key] = -(-numbers // sizes.thinned)
-        rate = 1.0 / (record.stamps.step * factors[key])
+        rate = 1.0 / (record.step * factors[key])
         drive = run.file.drive.frequency
         if drive is not None and run.file.windows.steady is None and rate < SLOWEST * drive:
             message = (

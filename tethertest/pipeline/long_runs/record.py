@@ -9,9 +9,9 @@ import numpy as np
 
 from tethertest.conditioning.jumps import NEAR, SHORTEST_JUMP, SIDE, without_jumps
 from tethertest.conditioning.mapping import Pairing
+from tethertest.conditioning.stamps import audit_of
 from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.gather import Gathered
-from tethertest.pipeline.long_runs.stamps import Audited, audited
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, Flag, Source
 from tethertest.signal.passes import blocks_of
@@ -22,7 +22,7 @@ class Record:
     """A log whose stamps are audited; clock jumps are taken out of every piece that is read."""
 
     log: Gathered
-    stamps: Audited
+    step: float  #: usual step of the stamps [s]
     columns: tuple[Column, ...]  #: of the rows that are kept: stamps, their flags, values of each sensor
     sizes: Sizes
     findings: tuple[Finding, ...] = ()
@@ -93,13 +93,20 @@ def record_of(log: Gathered, scratch: Scratch, sizes: Sizes) -> Record:
     Raises
     ------
     DataError
-        As `audited`.
+        As `audit_of`.
     """
-    stamps = audited(log, scratch, sizes)
-    columns = (stamps.time, stamps.flags, *log.values)
-    if stamps.dropped:
-        columns = tuple(_kept(column, stamps.kept, scratch, sizes) for column in columns)
-    record = Record(log, stamps, columns, sizes, (*log.findings, *stamps.findings), stamps.steps)
+    clock = log.entry.clock
+    audit = audit_of(log.stamps, log.rows, log.raw, clock, sizes.block, most=sizes.whole)
+    time, flags, kept = scratch.column("<f8"), scratch.column("<u2"), scratch.column("?")
+    for part in audit.blocks():
+        time.append(part.time)
+        flags.append(part.flags)
+        kept.append(np.ones(part.time.size, dtype=bool) if part.rows is None else part.rows)
+    values = log.values
+    if time.size < log.rows:
+        values = tuple(_kept(column, kept, scratch, sizes) for column in values)
+    findings = (*log.findings, *audit.findings)
+    record = Record(log, audit.step, (time, flags, *values), sizes, findings, audit.steps)
     gaps = _gaps(record)
     lost: list[tuple[float, float]] = []
     jumped: list[Finding] = []
@@ -111,8 +118,7 @@ def record_of(log: Gathered, scratch: Scratch, sizes: Sizes) -> Record:
             jumped.append(finding)
         else:
             lost.append(span)
-            missing += round(leap / stamps.step)
-    clock = log.entry.clock
+            missing += round(leap / record.step)
     found: Sequence[Finding] = jumped
     if lost:
         longest = max(stop - start for start, stop in lost)
@@ -143,7 +149,7 @@ def _gaps(record: Record) -> list[int]:
 
 def _leap(record: Record, row: int) -> tuple[float, Finding | None, tuple[float, float]]:
     """Return how far the stamps leap before a row, the finding where it is a jump, and the gap's ends."""
-    step = record.stamps.step
+    step = record.step
     reach = round((NEAR + 2.0 * SIDE) / step) + 2
     near = record.channels(row - 2, row + 1)[0].time
     before, after = float(near[-2]), float(near[-1])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tethertest.conditioning.bar import Bar, bottom_tension_over_motion
+from reports.clock_errors.bar import Bar, bottom_tension_over_motion
 from tethertest.records.arrays import BoolArray, FloatArray
 
 #: what lies above this fraction of the slower instrument's sampling rate is aliased and does not count

@@ -61,7 +61,7 @@ class Judged:
 def judged(number: int, rig: Rig = RIG) -> Judged:
     """Align the run of a number and compare."""
     run = random_run(number, rig)
-    fit, findings = fitted_clock(run.clock, run.channels, run.reference, run.run, run.guide)
+    fit, findings = fitted_clock(run.clock, run.channels, run.reference, run.run, run.priors)
     fatal = tuple(f"{item.kind}: {item.text}" for item in findings if item.severity == Severity.FATAL)
     error = fit.offset - run.offset
     outcome: Outcome = "refused" if fatal else "fitted"

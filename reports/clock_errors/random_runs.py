@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import datetime as dt
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from reports.clock_errors.bar import standard_uncertainties, tension_changes
 from reports.clock_errors.bound import Bound, Waveform, bound
 from reports.clock_errors.motion import SHARES, TAP_LENGTH, Transients, drawn_motion
 from reports.clock_errors.rig import (
@@ -23,8 +25,7 @@ from reports.clock_errors.rig import (
     stated_bar,
 )
 from reports.clock_errors.sampling import STAMPS, Sampling, between
-from tethertest.conditioning.bar import standard_uncertainties, tension_changes
-from tethertest.conditioning.guide import Guide
+from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel
 from tethertest.records.rig import Rig
@@ -72,7 +73,7 @@ class SyntheticRun:
     channels: tuple[Channel, ...]
     reference: tuple[Channel, ...]
     run: Run
-    guide: Guide
+    priors: RigPriors
     offset: float  #: true, of the audited stamps [s]
     drift: float  #: true [1]
     bound: Bound
@@ -141,7 +142,12 @@ def random_run(number: int, rig: Rig = RIG) -> SyntheticRun:
     return SyntheticRun(
         number, kind, transients, stamps, sum(item.gaps for item in samplings), length, frequency, rates,
         clock, channels, reference, _run(clock, frequency, motion.radius, mode, transients, rig),
-        Guide({}, Expected(mode), drive_frequency=None if transients == "knocks alone" else frequency),
+        RigPriors(
+            {},
+            Expected(mode),
+            partial(tension_changes, stated_bar(mode), standard_uncertainties(rig, mode, stated_bar(mode))),
+            drive_frequency=None if transients == "knocks alone" else frequency,
+        ),
         true_offset, true_drift,
         bound(wave, samplings[0].seen, samplings[1].seen, only, BELIEVABLE_DRIFT / np.sqrt(3.0)),
     )  # fmt: skip

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tethertest.conditioning.bar import Bar, bottom_tension_over_motion, standard_uncertainties
+from reports.clock_errors.bar import Bar, bottom_tension_over_motion, standard_uncertainties
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable, Platform, PlatformMode
 from tethertest.records.channel import Channel

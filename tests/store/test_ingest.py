@@ -14,7 +14,7 @@ import pytest
 from reports.crash_safety.battery import Battery, Tally, kill_at_random, starve
 from tethertest.cli import main
 from tethertest.conditioning import condition
-from tethertest.pipeline.evaluation import read_logs, rig_guide
+from tethertest.pipeline.evaluation import read_logs, rig_priors
 from tethertest.pipeline.stored import run_of
 from tethertest.readers import load_run
 from tethertest.store import load_store
@@ -50,7 +50,7 @@ def test_a_store_holds_what_the_report_would_see(
     assert content(run) == before
     stored = load_store(Path(said["path"]))
     read = load_run(run, RIGS)
-    expected = condition(read, read_logs(read), rig_guide(read))
+    expected = condition(read, read_logs(read), rig_priors(read))
     assert (stored.measured.clocks, stored.measured.findings) == (expected.clocks, expected.findings)
     for one, other in zip(stored.measured.channels, expected.channels, strict=True):
         assert np.array_equal(one.values, other.values, equal_nan=True)

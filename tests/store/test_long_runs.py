@@ -14,7 +14,7 @@ from tethertest.conditioning import condition
 from tethertest.conditioning.plateaus import plateaus_of, with_plateaus_flagged
 from tethertest.conditioning.stamps import audit_stamps
 from tethertest.errors import DataError, TethertestError
-from tethertest.pipeline.evaluation import read_logs, rig_guide
+from tethertest.pipeline.evaluation import read_logs, rig_priors
 from tethertest.pipeline.ingest import ingest_run
 from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.gather import gathered
@@ -53,7 +53,7 @@ def both_ways(folder: Path, target: Path, sizes: Sizes) -> tuple[ConditionedRun,
         {key: pieces(logs[key], 3001) for key in long},
     )
     ingest_long(run, sources, target, lambda raws: store_header(run, raws), lambda words, share: None, sizes)
-    return load_store(target).measured, condition(run, logs, rig_guide(run))
+    return load_store(target).measured, condition(run, logs, rig_priors(run))
 
 
 def assert_equal_but_for_noise(found: ConditionedRun, expected: ConditionedRun, errors: float) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tethertest.conditioning import condition
-from tethertest.pipeline.evaluation import read_logs, rig_guide
+from tethertest.pipeline.evaluation import read_logs, rig_priors
 from tethertest.readers import load_run
 from tethertest.records.channel import Flag
 
@@ -112,7 +112,7 @@ def test_planted_flaws_are_flagged_in_their_place_and_nothing_else_is(plant):
         random = np.random.default_rng(1000 + seed)
         bench = bench_module.make_bench(100 + seed)
         name, flag, place = plant(bench, random)
-        result = condition(bench.run, bench.logs(), bench.guide)
+        result = condition(bench.run, bench.logs(), bench.priors)
         flagged = (result.channel(name).flags & np.uint16(flag)) != 0
         share.append(float(np.mean(flagged[place])))
         found += bool(flagged[place].any())
@@ -137,7 +137,7 @@ def test_planted_flaws_are_flagged_in_their_place_and_nothing_else_is(plant):
 @pytest.mark.parametrize("run", ["run12", "run13", "run14", "run15"])
 def test_real_snaps_are_neither_spikes_nor_steps(run):
     loaded = load_run(ROOT / "datasets" / "rig3m" / run)
-    result = condition(loaded, read_logs(loaded), rig_guide(loaded))
+    result = condition(loaded, read_logs(loaded), rig_priors(loaded))
     for channel in result.channels:
         assert not channel.flag_counts(), (channel.name, channel.flag_counts())
 
@@ -161,7 +161,7 @@ def test_flaws_between_real_snaps_are_found(run, kind):
         size = random.uniform(0.5, 1.0) * float(np.ptp(values))
         values[place : place + 1 if kind == "spike" else None] += size
         spoilt = tuple(replace(c, values=values) if c is raw else c for c in log.channels)
-        result = condition(loaded, {**logs, key: replace(log, channels=spoilt)}, rig_guide(loaded))
+        result = condition(loaded, {**logs, key: replace(log, channels=spoilt)}, rig_priors(loaded))
         flag = Flag.SPIKE if kind == "spike" else Flag.STEP
         for channel in result.channels:
             rows = np.flatnonzero(channel.flags & np.uint16(Flag.SPIKE | Flag.STEP))

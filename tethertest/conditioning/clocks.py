@@ -10,7 +10,7 @@ from tethertest.conditioning.alignment import Comparison
 from tethertest.conditioning.band import best_cutoff
 from tethertest.conditioning.comparable import Comparable, comparables
 from tethertest.conditioning.correlation import SEARCH, scanned
-from tethertest.conditioning.guide import Guide
+from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.conditioning.rivals import Rival, chosen
 from tethertest.conditioning.straight import Delay, delays, worst
 from tethertest.records.channel import Channel, ClockFit, Finding, Severity
@@ -33,7 +33,7 @@ DEFAULT_DRIFT = 1e-4
 
 
 def fitted_clock(
-    clock: str, channels: Sequence[Channel], reference: Sequence[Channel], run: Run, guide: Guide
+    clock: str, channels: Sequence[Channel], reference: Sequence[Channel], run: Run, priors: RigPriors
 ) -> tuple[ClockFit, tuple[Finding, ...]]:
     """Fit one clock against the reference.
 
@@ -45,7 +45,7 @@ def fitted_clock(
         Channels on that clock and on the reference clock; wavelengths and tensions not tared yet.
     run : Run
         For the cable, believable drifts and offsets set by hand.
-    guide : Guide
+    priors : RigPriors
         For the expected tension.
 
     Returns
@@ -60,12 +60,12 @@ def fitted_clock(
         doubt = f"+/- {1e3 * error:.3g} ms{', assumed' if by_hand.error is None else ''}"
         text = f"offset {by_hand.value:+.4f} s ({doubt}) set by hand: {by_hand.reason}"
         fit = ClockFit(
-            clock, guide.reference_clock, by_hand.value, error, 0.0, believable / np.sqrt(3.0), text
+            clock, priors.reference_clock, by_hand.value, error, 0.0, believable / np.sqrt(3.0), text
         )
         return fit, (Finding(clock, "clock_override", text, Severity.NOTE),)
     refused: list[tuple[ClockFit, tuple[Finding, ...]]] = []
-    for comparable in comparables(channels, reference, run, guide):
-        fit, findings = _compared(clock, comparable, guide, believable)
+    for comparable in comparables(channels, reference, run, priors):
+        fit, findings = _compared(clock, comparable, priors, believable)
         if not any(item.severity == Severity.FATAL for item in findings):
             return fit, findings
         refused.append((fit, findings))
@@ -78,33 +78,33 @@ def identity(clock: str) -> ClockFit:
 
 
 def _compared(
-    clock: str, comparable: Comparable | str, guide: Guide, believable: float
+    clock: str, comparable: Comparable | str, priors: RigPriors, believable: float
 ) -> tuple[ClockFit, tuple[Finding, ...]]:
     """Return the fit of one comparison and what is to be said of it."""
     if isinstance(comparable, str):
-        return _unplaced(clock, guide, believable, comparable, 0.0)
+        return _unplaced(clock, priors, believable, comparable, 0.0)
     cutoff = best_cutoff(comparable.pair, comparable.drive)
     pair = comparable.pair.low_passed(cutoff)
     comparison = Comparison(pair, comparable.spans, comparable.slowest, cutoff, comparable.systematic)
     if not pair.clock.usable.any() or not pair.reference.usable.any():
         text = f"no samples are left to compare: {comparable.method}"
-        return _unplaced(clock, guide, believable, text, 0.0)
+        return _unplaced(clock, priors, believable, text, 0.0)
     scan = scanned(comparison, pair, believable, comparable.slowest, cutoff)
     prior = believable / np.sqrt(3.0)
     found = chosen(comparison, scan.candidates(MOST), prior, cutoff)
     if found is None or found[0].explained < EXPLAINED:
         share = "nothing" if found is None else f"{100.0 * found[0].explained:.0f} %"
         text = f"the best offset explains {share} of the signal: {comparable.method}"
-        return _unplaced(clock, guide, believable, text, 0.0)
+        return _unplaced(clock, priors, believable, text, 0.0)
     line, rivals = found
     left = delays(comparison, line)
     error = np.sqrt(np.diag(line.covariance))
     if error[0] > USELESS:
         text = f"the record tells the offset to no better than {1e3 * error[0]:.0f} ms: {comparable.method}"
-        return _unplaced(clock, guide, believable, text, line.offset)
+        return _unplaced(clock, priors, believable, text, line.offset)
     fit = ClockFit(
         clock,
-        guide.reference_clock,
+        priors.reference_clock,
         float(line.offset - comparable.lag),
         float(np.hypot(error[0], comparable.lag_error)),
         float(line.drift),
@@ -119,11 +119,11 @@ def _compared(
 
 
 def _unplaced(
-    clock: str, guide: Guide, believable: float, text: str, offset: float
+    clock: str, priors: RigPriors, believable: float, text: str, offset: float
 ) -> tuple[ClockFit, tuple[Finding, ...]]:
     fit = ClockFit(
         clock,
-        guide.reference_clock,
+        priors.reference_clock,
         offset,
         SEARCH / np.sqrt(3.0),
         0.0,

@@ -9,14 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from tethertest.conditioning.alignment import Pair
-from tethertest.conditioning.bar import (
-    UNSTATED_DAMPING_TIME,
-    Bar,
-    standard_uncertainties,
-    tension_changes,
-)
 from tethertest.conditioning.folding import without_folding
-from tethertest.conditioning.guide import Guide
+from tethertest.conditioning.rig_priors import UNSTATED_DAMPING_TIME, RigPriors
 from tethertest.conditioning.signals import (
     MOTION_STEP,
     TAP_HIGH_PASS,
@@ -66,7 +60,7 @@ class Comparable:
 
 
 def comparables(
-    channels: Sequence[Channel], reference: Sequence[Channel], run: Run, guide: Guide
+    channels: Sequence[Channel], reference: Sequence[Channel], run: Run, priors: RigPriors
 ) -> Iterator[Comparable | str]:
     """Yield what can be compared, the best first, or why nothing can.
 
@@ -76,25 +70,25 @@ def comparables(
         Channels on the clock and on the reference clock.
     run : Run
         For the rig.
-    guide : Guide
+    priors : RigPriors
         For the expected tension.
     """
     heave = next((channel for channel in channels if channel.kind == "displacement"), None)
     gratings = [channel for channel in channels if channel.kind == "wavelength" and channel.at is not None]
     tensions = [channel for channel in reference if channel.kind == "tension"]
-    drive = guide.drive_frequency or run.file.drive.frequency
+    drive = priors.drive_frequency or run.file.drive.frequency
     if not tensions:
-        yield f"the reference clock {guide.reference_clock!r} has no tension to compare with"
+        yield f"the reference clock {priors.reference_clock!r} has no tension to compare with"
     elif gratings:
-        yield _by_strain(gratings, tensions, run, guide.mains, drive)
+        yield _by_strain(gratings, tensions, run, priors.mains, drive)
     elif heave is None:
         yield "the clock has neither gratings nor a bottom displacement"
     else:
         bottom = next((channel for channel in tensions if channel.at == 0.0), None)
-        if guide.expected_tension is None or bottom is None:
+        if priors.expected_tension is None or bottom is None:
             yield "the bottom displacement needs a bottom tension and the tension the cable would answer with"
         else:
-            yield from _by_motion(heave, bottom, run, guide, guide.expected_tension, drive)
+            yield from _by_motion(heave, bottom, run, priors, priors.expected_tension, drive)
 
 
 def _by_strain(
@@ -128,7 +122,7 @@ def _by_motion(
     heave: Channel,
     bottom: Channel,
     run: Run,
-    guide: Guide,
+    priors: RigPriors,
     expected_tension: Callable[[Channel], Channel],
     drive: float | None,
 ) -> Iterator[Comparable | str]:
@@ -137,9 +131,9 @@ def _by_motion(
     start = heave if rest.before is None else heave.between(*rest.before)
     height = handed_over(heave.with_values(heave.values - np.nanmedian(start.values)))
     expected = expected_tension(height)
-    changes = _changes(height, run)
+    changes = _changes(height, priors)
     at_rest = (rest.before is not None, rest.after is not None)
-    pair = expected_pair(expected, height, heave.rate, bottom, guide.mains, changes, at_rest=at_rest)
+    pair = expected_pair(expected, height, heave.rate, bottom, priors.mains, changes, at_rest=at_rest)
     if pair is None:
         yield "holes leave no stretch of the bottom displacement long enough for the rig to settle"
         return
@@ -157,14 +151,10 @@ def _by_motion(
         )
 
 
-def _changes(height: Channel, run: Run) -> tuple[FloatArray, ...]:
+def _changes(height: Channel, priors: RigPriors) -> tuple[FloatArray, ...]:
     """Return what each thing that the rig does not know for certain changes in the bottom tension."""
-    bar = Bar.of(run.rig, run.file.platform.mode)
-    if bar is None:
-        return ()
-    uncertain = standard_uncertainties(run.rig, run.file.platform.mode, bar)
     thin = slice(None, None, THINNED)
-    found = tension_changes(bar, uncertain, height.values[thin], THINNED * MOTION_STEP)
+    found = priors.tension_changes(height.values[thin], THINNED * MOTION_STEP)
     return tuple(np.interp(height.time, height.time[thin], change) for change in found)
 
 

@@ -10,23 +10,24 @@ import numpy as np
 from tethertest.conditioning.clocks import fitted_clock, identity
 from tethertest.conditioning.cross_check import cross_findings, gains
 from tethertest.conditioning.flags import flag_findings, sensor_of, with_excludes, with_range_flagged
-from tethertest.conditioning.guide import Guide
 from tethertest.conditioning.hum import with_hum_flagged
 from tethertest.conditioning.inertia import cable_inertia
 from tethertest.conditioning.load_cells import calibrated
 from tethertest.conditioning.logged import LoggedChannels, as_logged
 from tethertest.conditioning.plateaus import with_plateaus_flagged
-from tethertest.conditioning.plausible import check_alive, check_ranges, check_rate, hole_findings
+from tethertest.conditioning.plausible import check_alive, check_range, check_rate, hole_findings
 from tethertest.conditioning.pushing import pushing_findings
-from tethertest.conditioning.rest import windows_of
+from tethertest.conditioning.rest import RunWindows, windows_of
+from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.conditioning.sensors import finished
 from tethertest.conditioning.shared_clocks import shared_clock_findings
 from tethertest.conditioning.spikes import with_spikes_flagged
 from tethertest.conditioning.steps import with_steps_flagged
 from tethertest.errors import DataError
 from tethertest.records.channel import Channel, ClockFit, ConditionedRun, Finding, RawLog, Severity
-from tethertest.records.rig import sensor_noise
+from tethertest.records.rig import Rig, sensor_noise
 from tethertest.records.run import Log, Run
+from tethertest.signal.passes import BLOCK
 
 #: hum is judged against the tension noise that the rig states; a cell without a statement has this much [N]
 DEFAULT_NOISE = 0.015
@@ -37,7 +38,7 @@ RANGED = ("tension", "displacement")
 SHORTEST_OVERLAP = 1.0
 
 
-def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> ConditionedRun:
+def condition(run: Run, logs: Mapping[str, RawLog], priors: RigPriors) -> ConditionedRun:
     """Turn the logs of a run into calibrated, tared, flagged channels on one clock.
 
     Parameters
@@ -46,7 +47,7 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
         The run and its rig.
     logs : mapping of str to RawLog
         The logs as read, by their `Log.key` in run.toml.
-    guide : Guide
+    priors : RigPriors
         What the rig's mechanics says beforehand.
 
     Returns
@@ -60,70 +61,47 @@ def condition(run: Run, logs: Mapping[str, RawLog], guide: Guide) -> Conditioned
     DataError
         Names, units, stamps, calibration or windows are wrong in a way that only a person can mend.
     """
+    channels, clocks, findings = _on_one_clock(run, logs, priors)
+    windows = windows_of(run, channels, priors.drive_frequency)
+    findings += windows.findings
+    channels, found = finished(with_steps_flagged(channels), run.rig, priors, windows)
+    findings += (*found, *pushing_findings(channels, run.rig))
+    channels, found = _within_limits(channels, run.rig, priors, windows)
+    findings += found
+    channels, found = with_excludes(channels, run)
+    findings += found
+    frequency = priors.drive_frequency or run.file.drive.frequency
+    findings += hole_findings(channels, windows.steady, frequency)
+    order = {sensor.name: number for number, sensor in enumerate(run.rig.sensor)}
+    channels = tuple(sorted(channels, key=lambda channel: order[channel.name]))
+    findings += [finding for channel in channels for finding in flag_findings(channel)]
+    findings += _cross_checked(run, channels, priors, windows, findings)
+    return ConditionedRun(
+        channels, clocks, tuple(findings), windows.rest_before, windows.rest_after, windows.steady
+    )
+
+
+def _on_one_clock(
+    run: Run, logs: Mapping[str, RawLog], priors: RigPriors
+) -> tuple[tuple[Channel, ...], tuple[ClockFit, ...], list[Finding]]:
+    """Return the channels of all logs on the reference clock, the fits of the clocks, and findings."""
     opened = [_opened(run, entry, logs[entry.key]) for entry in run.file.log]
-    for channel in (channel for item in opened for channel in item.channels):
-        check_rate(channel, run.rig)
-        check_alive(channel)
-    _check_sensors_once(opened)
-    clocks = list(dict.fromkeys(item.clock for item in opened))
-    if guide.reference_clock not in clocks:
-        guide = replace(guide, reference_clock=clocks[0])
-    _check_overlap(opened)
-    if guide.reference_clock in run.file.override.clock_offset:
-        message = (
-            f"[override.clock_offset] moves {guide.reference_clock!r}, to which the other clocks are fitted"
-        )
-        raise DataError(
-            message, "give the offsets of the other clocks against it", path=run.folder / "run.toml"
-        )
-    by_clock = {name: [c for item in opened if item.clock == name for c in item.channels] for name in clocks}
-    believed = {name: [_believed(run, channel, guide) for channel in by_clock[name]] for name in clocks}
-    check_ranges([channel for name in clocks for channel in believed[name]], run.rig)
-    reference = believed[guide.reference_clock]
+    _check_logged(run, opened)
+    priors = _with_reference(run, priors, opened)
+    by_clock: dict[str, list[Channel]] = {item.clock: [] for item in opened}
+    for item in opened:
+        by_clock[item.clock] += item.channels
+    for channel in (channel for channels in by_clock.values() for channel in channels):
+        check_range(_believed(run, channel, priors), run.rig)
     fits: list[ClockFit] = []
     findings: list[Finding] = []
-    channels: list[Channel] = []
-    for name in clocks:
-        if name == guide.reference_clock:
-            fit, problems = identity(name), NOTHING
-        else:
-            fit, problems = fitted_clock(name, believed[name], reference, run, guide)
+    for clock in by_clock:
+        fit, problems = _fitted(run, clock, by_clock, priors)
         fits.append(fit)
-        findings += [
-            mapped_finding(item, fit) for log in opened if log.clock == name for item in log.findings
-        ]
-        findings += problems
-        if not any(item.severity == Severity.FATAL for item in problems):
-            findings += shared_clock_findings(fit, believed[name], reference, run, guide)
-        channels += [mapped(channel, fit) for channel in by_clock[name]]
-    windows = windows_of(run, channels, guide.drive_frequency)
-    done, found = finished(with_steps_flagged(channels), run.rig, guide, windows)
-    findings += (*windows.findings, *found, *pushing_findings(done, run.rig))
-    at_rest = [item for item in (windows.rest_before, windows.rest_after) if item is not None]
-    result: list[Channel] = []
-    for channel in done:
-        sensor = sensor_of(run.rig, channel)
-        flagged = with_range_flagged(channel, sensor)
-        if flagged.kind == "tension":
-            noise = sensor_noise(sensor) or DEFAULT_NOISE
-            flagged, found = with_hum_flagged(flagged, guide.mains, noise, at_rest)
-            findings += found
-        result.append(flagged)
-    excluded, found = with_excludes(result, run)
-    findings += found
-    findings += hole_findings(excluded, windows.steady, guide.drive_frequency or run.file.drive.frequency)
-    order = {sensor.name: number for number, sensor in enumerate(run.rig.sensor)}
-    ordered = sorted(excluded, key=lambda channel: order[channel.name])
-    findings += [finding for channel in ordered for finding in flag_findings(channel)]
-    if windows.steady is not None:
-        frequency = guide.drive_frequency or run.file.drive.frequency
-        adrift = {item.subject for item in findings if item.kind == "clock_not_aligned"}
-        inertia = cable_inertia(run, ordered, windows.steady, frequency)
-        compared = gains(ordered, run.rig, windows.steady, guide.static_tension, inertia, adrift)
-        findings += cross_findings(compared, run.rig, inertia.doubt)
-    return ConditionedRun(
-        tuple(ordered), tuple(fits), tuple(findings), windows.rest_before, windows.rest_after, windows.steady
-    )
+        logged = [item for log in opened if log.clock == clock for item in log.findings]
+        findings += [*(mapped_finding(item, fit) for item in logged), *problems]
+    on_reference = tuple(mapped(channel, fit) for fit in fits for channel in by_clock[fit.clock])
+    return on_reference, tuple(fits), findings
 
 
 def _opened(run: Run, entry: Log, log: RawLog) -> LoggedChannels:
@@ -141,11 +119,88 @@ def _opened(run: Run, entry: Log, log: RawLog) -> LoggedChannels:
     return LoggedChannels(logged.clock, with_spikes_flagged(channels), tuple(findings))
 
 
-def _believed(run: Run, channel: Channel, guide: Guide) -> Channel:
+def _check_logged(run: Run, opened: Sequence[LoggedChannels]) -> None:
+    """Refuse logs that no run can have written."""
+    for channel in (channel for item in opened for channel in item.channels):
+        check_rate(channel, run.rig)
+        check_alive(channel)
+    _check_sensors_once(opened)
+    _check_overlap(opened)
+
+
+def _with_reference(run: Run, priors: RigPriors, opened: Sequence[LoggedChannels]) -> RigPriors:
+    """Return the priors with a reference clock that the run has."""
+    clocks = [item.clock for item in opened]
+    if priors.reference_clock not in clocks:
+        priors = replace(priors, reference_clock=clocks[0])
+    if priors.reference_clock in run.file.override.clock_offset:
+        message = (
+            f"[override.clock_offset] moves {priors.reference_clock!r}, to which the other clocks are fitted"
+        )
+        remedy = "give the offsets of the other clocks against it"
+        raise DataError(message, remedy, path=run.folder / "run.toml")
+    return priors
+
+
+def _fitted(
+    run: Run, clock: str, by_clock: Mapping[str, Sequence[Channel]], priors: RigPriors
+) -> tuple[ClockFit, tuple[Finding, ...]]:
+    """Return the fit of one clock, and what is wrong with it or with the files that share it."""
+    is_reference = clock == priors.reference_clock
+    if is_reference and len({channel.source.file for channel in by_clock[clock] if channel.source}) < 2:
+        return identity(clock), NOTHING
+    reference = [_believed(run, channel, priors) for channel in by_clock[priors.reference_clock]]
+    if is_reference:
+        channels, fit, problems = reference, identity(clock), NOTHING
+    else:
+        channels = [_believed(run, channel, priors) for channel in by_clock[clock]]
+        fit, problems = fitted_clock(clock, channels, reference, run, priors)
+    if any(item.severity == Severity.FATAL for item in problems):
+        return fit, problems
+    return fit, (*problems, *shared_clock_findings(fit, channels, reference, run, priors))
+
+
+def _within_limits(
+    channels: Sequence[Channel], rig: Rig, priors: RigPriors, windows: RunWindows
+) -> tuple[tuple[Channel, ...], tuple[Finding, ...]]:
+    """Return the channels with their ranges and hum flagged."""
+    at_rest = [item for item in (windows.rest_before, windows.rest_after) if item is not None]
+    result: list[Channel] = []
+    findings: list[Finding] = []
+    for channel in channels:
+        sensor = sensor_of(rig, channel)
+        flagged = with_range_flagged(channel, sensor)
+        if flagged.kind == "tension":
+            noise = sensor_noise(sensor) or DEFAULT_NOISE
+            flagged, found = with_hum_flagged(flagged, priors.mains, noise, at_rest)
+            findings += found
+        result.append(flagged)
+    return tuple(result), tuple(findings)
+
+
+def _cross_checked(
+    run: Run,
+    channels: Sequence[Channel],
+    priors: RigPriors,
+    windows: RunWindows,
+    findings: Sequence[Finding],
+) -> tuple[Finding, ...]:
+    """Return what gratings and load cells say of each other in the steady window."""
+    if windows.steady is None:
+        return ()
+    adrift = {item.subject for item in findings if item.kind == "clock_not_aligned"}
+    inertia = cable_inertia(run, channels, windows.steady, priors)
+    compared = gains(channels, run.rig, windows.steady, priors.static_tension, inertia, adrift)
+    return cross_findings(compared, run.rig, inertia.doubt)
+
+
+def _believed(run: Run, channel: Channel, priors: RigPriors) -> Channel:
     """Return the channel with what is far beyond its range flagged, before its zero is known."""
-    if channel.kind not in RANGED or not channel.usable.any():
+    if channel.kind not in RANGED or not channel.usable[:: channel.time.size // BLOCK + 1].any():
         return channel
-    middle = float(np.median(channel.values[channel.usable])) - guide.static_tension.get(channel.name, 0.0)
+    every = slice(None, None, channel.time.size // BLOCK + 1)
+    middle = float(np.median(channel.values[every][channel.usable[every]]))
+    middle -= priors.static_tension.get(channel.name, 0.0)
     return with_range_flagged(channel.with_values(channel.values - middle), sensor_of(run.rig, channel))
 
 

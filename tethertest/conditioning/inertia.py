@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tethertest.conditioning.bar import Bar, bottom_tension_over_motion
+from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.conditioning.stated import (
     STATED_AMPLITUDE,
     bottom_displacement,
@@ -37,12 +37,12 @@ class _Motion:
     doubt: str = ""
 
 
-def cable_inertia(run: Run, channels: Sequence[Channel], window: Window, frequency: float | None) -> Inertia:
+def cable_inertia(run: Run, channels: Sequence[Channel], window: Window, priors: RigPriors) -> Inertia:
     """Return what the cable's own inertia adds between its ends while it follows the drive.
 
     The motion is the measured one; where the run file states another, the larger of both, as either may be
     wrong; where none was measured, what the run file states, and as much more as is believed of a statement;
-    where it states none, what the smallest tension asks of the rig as a bar.
+    where it states none, what the smallest tension asks of the rig.
 
     Parameters
     ----------
@@ -52,12 +52,13 @@ def cable_inertia(run: Run, channels: Sequence[Channel], window: Window, frequen
         Conditioned displacements [m] and tensions [N] on one clock.
     window : Window
         Where tensions are compared.
-    frequency : float or None
-        Of the drive [Hz].
+    priors : RigPriors
+        Frequency of the drive [Hz]; the run file's where it has none. How tension answers motion.
     """
+    frequency = priors.drive_frequency or run.file.drive.frequency
     if frequency is None:
         return Inertia(0.0, "no drive frequency is known, so nothing is allowed for the cable's inertia")
-    motion = _measured(run, channels, window) or _unmeasured(run, channels, window, frequency)
+    motion = _measured(run, channels, window) or _unmeasured(run, channels, window, frequency, priors)
     weight = run.rig.cable.mass_per_length * run.rig.cable.length
     return Inertia(weight * (2.0 * np.pi * frequency) ** 2 * motion.size, motion.doubt)
 
@@ -73,17 +74,19 @@ def _measured(run: Run, channels: Sequence[Channel], window: Window) -> _Motion 
     return _Motion(max(size, stated / np.sqrt(2.0)), otherwise)
 
 
-def _unmeasured(run: Run, channels: Sequence[Channel], window: Window, frequency: float) -> _Motion:
+def _unmeasured(
+    run: Run, channels: Sequence[Channel], window: Window, frequency: float, priors: RigPriors
+) -> _Motion:
     unseen = "no bottom motion was measured: the cable's inertia is by"
     stated = stated_amplitude(run)
     if stated is not None:
         size = (1.0 + STATED_AMPLITUDE) * stated / np.sqrt(2.0)
         return _Motion(size, f"{unseen} the {stated:.4g} m under [drive] of run.toml")
-    bar = Bar.of(run.rig, run.file.platform.mode)
+    over = priors.tension_over_motion
     sizes = [
-        tension / float(abs(bottom_tension_over_motion(bar, np.array([frequency]), channel.at)[0]))
+        tension / over(frequency, channel.at)
         for channel in channels
-        if bar is not None and channel.kind == "tension" and channel.at is not None
+        if over is not None and channel.kind == "tension" and channel.at is not None
         if (tension := _deviation(channel, window)) is not None
     ]
     return _Motion(min(sizes, default=0.0), f"{unseen} what the tension asks of the platform")

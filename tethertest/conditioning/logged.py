@@ -44,7 +44,7 @@ def as_logged(raw: RawLog, entry: Log, run: Run) -> LoggedChannels:
     Raises
     ------
     DataError
-        Names, units or stamps are wrong; see `paired`, `start_after` and `audited`.
+        Names, units or stamps are wrong; see `paired`, `start_after` and `audit_stamps`.
     """
     pairings, findings = paired(raw, entry, run.rig)
     start, start_findings = start_after(raw, entry, run.file.date)
@@ -88,8 +88,10 @@ def _column(pairing: Pairing, stamps: Stamps, raw: RawLog, entry: Log) -> Channe
     if pairing.raw.as_written is not None and (pairing.sensor is None or is_grating(pairing.sensor)):
         # the rig knows its gratings better than the reader, who had to learn them from the log
         logged, told = pairing.raw.as_written, None
-    values = scale.factor * logged[stamps.rows]
-    values += scale.offset
+    values = logged[stamps.rows]
+    if (scale.factor, scale.offset) != (1.0, 0.0):
+        values = scale.factor * values
+        values += scale.offset
     flags = stamps.flags.copy()
     flags[~np.isfinite(values)] |= np.uint16(Flag.MISSING)
     if told is not None:

@@ -62,37 +62,36 @@ def check_alive(channel: Channel) -> None:
     raise DataError(message, remedy, path=channel.source.file if channel.source else None)
 
 
-def check_ranges(channels: Sequence[Channel], rig: Rig) -> None:
+def check_range(channel: Channel, rig: Rig) -> None:
     """Refuse a channel that is mostly beyond its sensor's range: its unit or its calibration is wrong.
 
     Parameters
     ----------
-    channels : sequence of Channel
+    channel : Channel
         With `Flag.OUT_OF_RANGE` about a believable zero.
     rig : Rig
-        Their sensors.
+        Its sensor.
 
     Raises
     ------
     DataError
         More than `BEYOND_SHARE` of the samples are flagged.
     """
-    for channel in channels:
-        share = float(np.mean((channel.flags & np.uint16(Flag.OUT_OF_RANGE)) != 0))
-        if share <= BEYOND_SHARE:
-            continue
-        low, high = sensor_range(sensor_of(rig, channel))
-        source = channel.source
-        unit = f" as {source.unit_as_written}" if source and source.unit_as_written else ""
-        message = (
-            f"{share:.0%} of {channel.name!r}, logged{unit}, lies beyond its range of {low:g} to {high:g} "
-            f"{channel.unit}"
-        )
-        remedy = (
-            "correct the unit (units under its [[log]]), the sensor in channels, or the sensor's range and "
-            "calibration in the rig file"
-        )
-        raise DataError(message, remedy, path=source.file if source else None)
+    share = float(np.mean((channel.flags & np.uint16(Flag.OUT_OF_RANGE)) != 0))
+    if share <= BEYOND_SHARE:
+        return
+    low, high = sensor_range(sensor_of(rig, channel))
+    source = channel.source
+    unit = f" as {source.unit_as_written}" if source and source.unit_as_written else ""
+    message = (
+        f"{share:.0%} of {channel.name!r}, logged{unit}, lies beyond its range of {low:g} to {high:g} "
+        f"{channel.unit}"
+    )
+    remedy = (
+        "correct the unit (units under its [[log]]), the sensor in channels, or the sensor's range and "
+        "calibration in the rig file"
+    )
+    raise DataError(message, remedy, path=source.file if source else None)
 
 
 def hole_findings(

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from tethertest.conditioning.flags import sensor_of
-from tethertest.conditioning.guide import Guide
 from tethertest.conditioning.mapping import is_grating
 from tethertest.conditioning.rest import RunWindows
+from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.conditioning.strain import (
     RECTANGLE,
     TEMPERATURE_CUTOFF,
@@ -30,7 +30,7 @@ SAME_PLACE = 2e-3
 
 
 def finished(
-    channels: Sequence[Channel], rig: Rig, guide: Guide, windows: RunWindows
+    channels: Sequence[Channel], rig: Rig, priors: RigPriors, windows: RunWindows
 ) -> tuple[tuple[Channel, ...], tuple[Finding, ...]]:
     """Return tared tensions and displacements, strains and temperatures.
 
@@ -40,7 +40,7 @@ def finished(
         Tension [N], displacement [m] and wavelengths [m] on the run's clock.
     rig : Rig
         Their sensors.
-    guide : Guide
+    priors : RigPriors
         Tensions at rest.
     windows : RunWindows
         The rest windows.
@@ -66,11 +66,11 @@ def finished(
         elif is_grating(sensor):
             changed, found = _strain(channel, sensor, rig, temperatures, windows, before or after)
         elif channel.kind == "tension":
-            if channel.name not in guide.static_tension:
+            if channel.name not in priors.static_tension:
                 text = "the tension at rest is not known: rest is set to zero"
                 findings.append(Finding(channel.name, "no_static_tension", text))
             allowed = TENSION_DRIFT * (sensor.rated or DEFAULT_RATED)
-            expected = guide.static_tension.get(channel.name, 0.0)
+            expected = priors.static_tension.get(channel.name, 0.0)
             changed, found = zeroed(channel, before, after, expected, allowed)
         else:
             changed, found = zeroed(channel, before, None if before else after, 0.0, np.inf)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tethertest.conditioning.clocks import fitted_clock
-from tethertest.conditioning.guide import Guide
+from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.records.channel import Channel, ClockFit, Finding, Severity
 from tethertest.records.run import Run
 
@@ -18,7 +18,7 @@ PLACED = frozenset(["displacement", "wavelength"])
 
 
 def shared_clock_findings(
-    fit: ClockFit, channels: Sequence[Channel], reference: Sequence[Channel], run: Run, guide: Guide
+    fit: ClockFit, channels: Sequence[Channel], reference: Sequence[Channel], run: Run, priors: RigPriors
 ) -> tuple[Finding, ...]:
     """Say which files of a clock are not on it, by what each of them shows by itself.
 
@@ -30,7 +30,7 @@ def shared_clock_findings(
         Channels on that clock and on the reference clock, as `fitted_clock` takes them.
     run : Run
         The run.
-    guide : Guide
+    priors : RigPriors
         What the rig's mechanics says beforehand.
 
     Returns
@@ -48,7 +48,7 @@ def shared_clock_findings(
         own = [channel for channel in channels if channel.source and channel.source.file == file]
         if any(channel.kind == "tension" for channel in own) or not any(c.kind in PLACED for c in own):
             continue
-        found, problems = fitted_clock(fit.clock, own, reference, run, guide)
+        found, problems = fitted_clock(fit.clock, own, reference, run, priors)
         if any(item.severity == Severity.FATAL for item in problems):
             continue
         middle = float(np.mean([own[0].time[0], own[0].time[-1]]))

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from tethertest.compare import compare
-from tethertest.conditioning import Guide, condition, stated_findings
+from tethertest.conditioning import RigPriors, condition, stated_findings
 from tethertest.conditioning.stated import bottom_displacement
 from tethertest.errors import DataError
 from tethertest.pipeline.analysis_options import (
@@ -46,6 +46,7 @@ from tethertest.replay import (
     run_scene,
     variations,
 )
+from tethertest.replay.mechanics import tension_changes, tension_over_motion
 from tethertest.solver import FIRST_MESH, modes, solve
 from tethertest.spectra import find_events, find_lines, fit_drive
 from tethertest.spectra.crank_angle import CrankAngle, crank_angle
@@ -104,7 +105,7 @@ class Evaluation:
     @cached_property
     def conditioned(self) -> ConditionedRun:
         """Channels on one clock, as conditioning leaves them."""
-        return condition(self.run, self.logs, rig_guide(self.run)) if self._stored is None else self._stored
+        return condition(self.run, self.logs, rig_priors(self.run)) if self._stored is None else self._stored
 
     @cached_property
     def stated(self) -> tuple[Finding, ...]:
@@ -356,11 +357,13 @@ def read_logs(run: Run) -> dict[str, RawLog]:
     return {log.key: read_log(run.folder / log.file, log) for log in run.file.log}
 
 
-def rig_guide(run: Run) -> Guide:
+def rig_priors(run: Run) -> RigPriors:
     """Return what the solver tells the conditioning of a run."""
-    return Guide(
+    return RigPriors(
         static_tension=rest_tensions(run.rig),
         expected_tension=expected_bottom_tension(run),
+        tension_changes=tension_changes(run),
+        tension_over_motion=tension_over_motion(run),
         drive_frequency=run.file.drive.frequency,
     )
 

@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tethertest.conditioning import Guide
+from tethertest.conditioning import RigPriors
 from tethertest.records.cable import Cable, Platform, PlatformMode
 from tethertest.records.channel import Channel, RawChannel, RawLog
 from tethertest.records.rig import Instrument, Limits, Rig, Sensor
 from tethertest.records.run import Drive, Log, Run, RunFile, Windows
+from tethertest.replay.mechanics import tension_changes, tension_over_motion
 
 DATE = dt.datetime(2026, 9, 5, 14, 20, tzinfo=dt.timezone(dt.timedelta(hours=8)))
 MASS, STIFFNESS, CABLE = 0.4, 10_020.0, 3.0
@@ -127,7 +128,7 @@ class Bench:
     stamps: dict[str, np.ndarray]
     starts: dict[str, dt.datetime]
     run: Run
-    guide: Guide
+    priors: RigPriors
     units: dict[str, str] = field(
         default_factory=lambda: {
             "F_top": "mV/V",
@@ -214,7 +215,8 @@ def make_bench(
     frequency = None if drive == "none" else FREQUENCY
     file = RunFile("bench-1", "bench", DATE, Drive(kind, frequency, RADIUS), entries, windows=Windows())
     run = Run(Path("bench"), file, RIG, Path("bench.toml"))
-    return Bench(clocks, columns, stamps, {}, run, Guide(REST, expected_tension))
+    priors = RigPriors(REST, expected_tension, tension_changes(run), tension_over_motion(run))
+    return Bench(clocks, columns, stamps, {}, run, priors)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from tethertest.conditioning import condition
 
 
 def test_clean_run_warns_of_nothing_and_reads_the_rest_tension(bench):
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     assert [item for item in conditioned.findings if item.severity != "note"] == []
     assert [channel.name for channel in conditioned.channels] == [s.name for s in bench.run.rig.sensor]
     top = conditioned.channel("tension_top")
@@ -19,7 +19,7 @@ def test_clean_run_warns_of_nothing_and_reads_the_rest_tension(bench):
 
 
 def test_windows_leave_the_ramps_out(bench):
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     offset, drift = bench.clocks["daq"]
     true = [(edge - offset) / (1 + drift) for edge in (conditioned.steady.start, conditioned.steady.stop)]
     assert true[0] > 9.0
@@ -32,7 +32,7 @@ def test_windows_leave_the_ramps_out(bench):
 
 
 def test_strain_times_stiffness_is_the_tension(bench):
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     top, strain = conditioned.channel("tension_top"), conditioned.channel("fbg2")
     inside = (strain.time > conditioned.steady.start) & (strain.time < conditioned.steady.stop)
     tension = np.interp(strain.time[inside], top.time, top.values) - 5.0
@@ -42,7 +42,7 @@ def test_strain_times_stiffness_is_the_tension(bench):
 
 
 def test_every_step_is_on_record(bench):
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     steps = " | ".join(conditioned.channel("fbg1").source.steps)
     for word in (
         "factor 1e-09",
@@ -58,7 +58,7 @@ def test_every_step_is_on_record(bench):
 def test_quiet_run_has_rest_and_no_steady_window(maker):
     bench = maker(drive="none")
     run = bench.run
-    conditioned = condition(run, bench.logs(), bench.guide)
+    conditioned = condition(run, bench.logs(), bench.priors)
     assert conditioned.steady is None
     assert conditioned.rest_before is not None
     assert conditioned.rest_after is not None

@@ -16,7 +16,7 @@ from tethertest.records.run import ClockOffset, Override, Windows
 )
 def test_offset_and_drift_lie_within_their_stated_errors(maker, seed, clock, offset_limit, drift_limit):
     bench = maker(seed)
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     fit = next(item for item in conditioned.clocks if item.clock == clock)
     offset, drift = bench.relative(clock)
     assert abs(fit.offset - offset) < min(3 * fit.offset_error, offset_limit)
@@ -25,7 +25,7 @@ def test_offset_and_drift_lie_within_their_stated_errors(maker, seed, clock, off
 
 
 def test_reference_clock_is_the_identity(bench):
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     fit = conditioned.clocks[0]
     assert (fit.clock, fit.offset, fit.drift) == ("daq", 0.0, 0.0)
     np.testing.assert_allclose(conditioned.channel("tension_top").time, bench.stamps["daq"], atol=1e-6)
@@ -34,7 +34,7 @@ def test_reference_clock_is_the_identity(bench):
 def test_periodic_record_without_transients_is_refused(maker):
     bench = maker(taps=False, ramps=False)
     windows = Windows(rest_before=(3.0, 8.0), steady=(8.0, 30.0), reason="test")
-    conditioned = condition(bench.with_file(windows=windows), bench.logs(), bench.guide)
+    conditioned = condition(bench.with_file(windows=windows), bench.logs(), bench.priors)
     fatal = {(item.subject, item.kind) for item in conditioned.findings if item.severity == "fatal"}
     assert ("interrogator", "clock_ambiguous") in fatal
     assert ("encoder", "clock_ambiguous") in fatal
@@ -44,7 +44,7 @@ def test_periodic_record_without_transients_is_refused(maker):
 
 def test_start_and_stop_choose_the_cycle_without_taps(maker):
     bench = maker(taps=False)
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     assert not [item for item in conditioned.findings if item.severity == "fatal"]
     fit = conditioned.clocks[2]
     assert abs(fit.offset - bench.relative("encoder")[0]) < 0.01
@@ -53,7 +53,7 @@ def test_start_and_stop_choose_the_cycle_without_taps(maker):
 
 def test_offset_by_hand_wins(bench):
     override = Override({"interrogator": ClockOffset(0.5, "marker tap")})
-    conditioned = condition(bench.with_file(override=override), bench.logs(), bench.guide)
+    conditioned = condition(bench.with_file(override=override), bench.logs(), bench.priors)
     fit = conditioned.clocks[1]
     assert (fit.offset, fit.drift) == (0.5, 0.0)
     assert "marker tap" in fit.method
@@ -64,15 +64,15 @@ def test_offset_by_hand_wins(bench):
 
 def test_an_offset_by_hand_carries_the_error_that_it_is_given(bench):
     override = Override({"interrogator": ClockOffset(0.5, "marker tap", 2e-3)})
-    fit = condition(bench.with_file(override=override), bench.logs(), bench.guide).clocks[1]
+    fit = condition(bench.with_file(override=override), bench.logs(), bench.priors).clocks[1]
     assert fit.offset_error == 2e-3
     assert "+/- 2 ms" in fit.method
     assert "assumed" not in fit.method
 
 
 def test_clock_without_anything_to_compare_is_fatal(bench):
-    guide = replace(bench.guide, expected_tension=None)
-    conditioned = condition(bench.run, bench.logs(), guide)
+    priors = replace(bench.priors, expected_tension=None)
+    conditioned = condition(bench.run, bench.logs(), priors)
     found = [item for item in conditioned.findings if item.severity == "fatal"]
     assert [(item.subject, item.kind) for item in found] == [("encoder", "clock_not_aligned")]
 
@@ -81,11 +81,11 @@ def test_phase_of_the_drive_does_not_enter_the_encoders_clock(bench):
     """A replay that is late by 20 degrees in the drive, but right in the taps, moves the clock by nothing."""
 
     def late(heave):
-        right = bench.guide.expected_tension(heave)
+        right = bench.priors.expected_tension(heave)
         wrong = np.interp(right.time - 20.0 / 360.0 / 0.5, right.time, right.values)
         middle = (right.time > right.time[0] + 9.0) & (right.time < right.time[0] + 26.0)
         return right.with_values(np.where(middle, wrong, right.values))
 
-    straight = condition(bench.run, bench.logs(), bench.guide).clocks[2]
-    bent = condition(bench.run, bench.logs(), replace(bench.guide, expected_tension=late)).clocks[2]
+    straight = condition(bench.run, bench.logs(), bench.priors).clocks[2]
+    bent = condition(bench.run, bench.logs(), replace(bench.priors, expected_tension=late)).clocks[2]
     assert bent.offset == pytest.approx(straight.offset, abs=2e-5)

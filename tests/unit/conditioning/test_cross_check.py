@@ -22,11 +22,11 @@ def told(conditioned):
 
 
 def test_agreement_is_a_note_with_all_gains(bench):
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     assert not told(conditioned)
     (note,) = [item for item in conditioned.findings if item.kind == "strain_over_tension"]
     assert note.severity == "note"
-    found = gains(conditioned.channels, bench.run.rig, WINDOW, bench.guide.static_tension, Inertia(0.05))
+    found = gains(conditioned.channels, bench.run.rig, WINDOW, bench.priors.static_tension, Inertia(0.05))
     assert len(found) == 7  # two gratings against both cells and against each, and cell against cell
     for item in found:
         assert item.gain == pytest.approx(1.0, abs=0.01)
@@ -43,7 +43,7 @@ def test_agreement_is_a_note_with_all_gains(bench):
 def test_one_load_cell_that_is_wrong_is_named_with_the_slip(bench, factor, words):
     """Strain over tension is the inverse of what the cell was spoilt with."""
     bench.columns["F_top"] = factor * (bench.columns["F_top"] - np.median(bench.columns["F_top"][:500]))
-    (finding,) = told(condition(bench.run, bench.logs(), bench.guide))
+    (finding,) = told(condition(bench.run, bench.logs(), bench.priors))
     assert finding.subject == "tension_top"
     assert words in finding.text
     assert finding.severity == "warning"
@@ -52,14 +52,14 @@ def test_one_load_cell_that_is_wrong_is_named_with_the_slip(bench, factor, words
 def test_a_load_cell_with_the_wrong_sign_is_seen_by_the_other_one(bench):
     """The gratings' clock cannot be aligned then; the size of their motion is right."""
     bench.columns["F_top"] = -(bench.columns["F_top"] - np.median(bench.columns["F_top"][:500]))
-    (finding,) = told(condition(bench.run, bench.logs(), bench.guide))
+    (finding,) = told(condition(bench.run, bench.logs(), bench.priors))
     assert finding.subject == "load cells"
     assert "a sign" in finding.text
 
 
 def test_a_wrong_stiffness_is_told_of_the_cable(bench):
     rig = replace(bench.run.rig, cable=replace(bench.run.rig.cable, axial_stiffness=14_000.0))
-    (finding,) = told(condition(replace(bench.run, rig=rig), bench.logs(), bench.guide))
+    (finding,) = told(condition(replace(bench.run, rig=rig), bench.logs(), bench.priors))
     assert finding.subject == "cable"
     assert "is 1.397" in finding.text
     assert "axial_stiffness" in finding.text
@@ -70,7 +70,7 @@ def test_a_wrong_gauge_factor_is_told_of_its_grating(bench):
         replace(item, gauge_factor=1.2) if item.name == "fbg2" else item for item in bench.run.rig.sensor
     )
     run = replace(bench.run, rig=replace(bench.run.rig, sensor=sensors))
-    (finding,) = told(condition(run, bench.logs(), bench.guide))
+    (finding,) = told(condition(run, bench.logs(), bench.priors))
     assert finding.subject == "fbg2"
     assert "is 0.65" in finding.text
 
@@ -79,21 +79,21 @@ def test_a_stated_uncertainty_covers_a_stiffness_that_is_off_by_as_much(bench):
     cable = replace(bench.run.rig.cable, axial_stiffness=10_500.0)
     uncertain = {**bench.run.rig.uncertainty, "cable.axial_stiffness": 300.0}
     rig = replace(bench.run.rig, cable=cable, uncertainty=uncertain)
-    assert not told(condition(replace(bench.run, rig=rig), bench.logs(), bench.guide))
+    assert not told(condition(replace(bench.run, rig=rig), bench.logs(), bench.priors))
     exact = replace(rig, uncertainty={})
-    assert told(condition(replace(bench.run, rig=exact), bench.logs(), bench.guide))
+    assert told(condition(replace(bench.run, rig=exact), bench.logs(), bench.priors))
 
 
 def test_a_tension_that_hardly_moves_tells_nothing(bench):
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     still = Window(0.3, 1.9)
-    assert not gains(conditioned.channels, bench.run.rig, still, bench.guide.static_tension, Inertia(0.0))
+    assert not gains(conditioned.channels, bench.run.rig, still, bench.priors.static_tension, Inertia(0.0))
 
 
 def test_clipped_peaks_do_not_tilt_the_comparison(bench):
     limit = float(np.round(np.quantile(bench.columns["F_top"], 0.9), 6))
     bench.columns["F_top"] = np.minimum(bench.columns["F_top"], limit)
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     assert not told(conditioned)
 
 
@@ -108,7 +108,7 @@ def test_what_inertia_may_be_is_no_fault_of_a_cell_though_no_motion_was_measured
     """Mass times acceleration of the cable is 3 % of the tension here."""
     spread_by_inertia(bench, 0.03)
     run = bench.with_file(log=bench.run.file.log[:2])
-    conditioned = condition(run, bench.logs(), bench.guide)
+    conditioned = condition(run, bench.logs(), bench.priors)
     assert conditioned.channel("heave") is None
     assert not told(conditioned)
     (note,) = [item for item in conditioned.findings if item.kind == "strain_over_tension"]
@@ -124,7 +124,7 @@ def test_more_than_inertia_is_told_with_what_is_not_known_of_the_motion(bench, l
         bench.columns["F_bottom"] - np.median(bench.columns["F_bottom"][:300])
     )
     file = {"log": bench.run.file.log[:logs], "drive": replace(bench.run.file.drive, radius=radius)}
-    (finding,) = told(condition(bench.with_file(**file), bench.logs(), bench.guide))
+    (finding,) = told(condition(bench.with_file(**file), bench.logs(), bench.priors))
     assert finding.subject == "tension_bottom"
     assert words in finding.text
 
@@ -133,6 +133,6 @@ def test_a_motion_that_is_not_as_stated_accuses_no_cell(bench):
     """The encoder shows half the motion, so half the inertia."""
     spread_by_inertia(bench, 0.04)
     bench.columns["heave"] = 0.5 * bench.columns["heave"]
-    assert not told(condition(bench.run, bench.logs(), bench.guide))
+    assert not told(condition(bench.run, bench.logs(), bench.priors))
     believed = replace(bench.run.file.drive, radius=0.025)
-    assert told(condition(bench.with_file(drive=believed), bench.logs(), bench.guide))
+    assert told(condition(bench.with_file(drive=believed), bench.logs(), bench.priors))

@@ -12,13 +12,13 @@ from tethertest.records.run import ClockOffset, Exclude, Override, Windows
 
 def refused(bench, run=None) -> DataError:
     with pytest.raises(DataError) as caught:
-        condition(bench.run if run is None else run, bench.logs(), bench.guide)
+        condition(bench.run if run is None else run, bench.logs(), bench.priors)
     assert caught.value.remedy
     return caught.value
 
 
 def fatal(bench, run=None) -> dict[str, str]:
-    conditioned = condition(bench.run if run is None else run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run if run is None else run, bench.logs(), bench.priors)
     return {item.kind: item.text for item in conditioned.findings if item.severity == "fatal"}
 
 
@@ -61,7 +61,7 @@ def test_a_log_of_a_moment_is_no_run(bench):
 
 def test_a_dead_grating_is_told_and_decides_nothing(bench):
     bench.columns["fbg1"] = np.full_like(bench.columns["fbg1"], np.nan)
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     assert "lost" in {item.kind for item in conditioned.findings if item.subject == "fbg1"}
     assert not [item for item in conditioned.findings if item.severity == "fatal"]
 

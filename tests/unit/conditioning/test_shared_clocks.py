@@ -21,7 +21,7 @@ def bench() -> Bench:
 def findings(bench: Bench, clocks: dict[str, str], **changes: object) -> list[tuple[str, str, str]]:
     """Condition the run with some files on other clocks; return what is found of shared ones."""
     entries = tuple(replace(log, clock=clocks.get(log.file, log.clock)) for log in bench.run.file.log)
-    result = condition(bench.with_file(log=entries, **changes), bench.logs(), bench.guide)
+    result = condition(bench.with_file(log=entries, **changes), bench.logs(), bench.priors)
     return [
         (item.subject, item.severity, item.text) for item in result.findings if item.kind == "clock_shared"
     ]

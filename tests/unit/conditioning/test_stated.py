@@ -23,22 +23,22 @@ RAN = DriveFit(0.5, 1e-5, ("heave",))
     ],
 )
 def test_a_slip_of_the_pen_is_a_warning(bench, drive, kinds):
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     found = stated_findings(bench.with_file(drive=drive), conditioned, RAN)
     assert [(item.kind, item.severity) for item in found] == [(kind, "warning") for kind in kinds]
 
 
 def test_a_driven_run_that_says_it_is_none_decides_nothing(bench, maker):
     run = bench.with_file(drive=Drive("none"))
-    conditioned = condition(run, bench.logs(), bench.guide)
+    conditioned = condition(run, bench.logs(), bench.priors)
     assert [item.severity for item in stated_findings(run, conditioned, None)] == ["fatal"]
     quiet = maker(drive="none")
-    conditioned = condition(quiet.run, quiet.logs(), quiet.guide)
+    conditioned = condition(quiet.run, quiet.logs(), quiet.priors)
     assert stated_findings(quiet.run, conditioned, None) == ()
 
 
 def test_a_calibration_run_validates_nothing(bench):
-    conditioned = condition(bench.run, bench.logs(), bench.guide)
+    conditioned = condition(bench.run, bench.logs(), bench.priors)
     run = replace(bench.run, file=replace(bench.run.file, purpose="calibration"))
     assert [(item.kind, item.severity) for item in stated_findings(run, conditioned, RAN)] == [
         ("calibration_run", "fatal")

@@ -118,7 +118,7 @@ def test_without_rest_the_zero_is_unknown():
 
 def test_thermometer_in_degrees_compensates_as_a_grating_does(bench):
     """The same warming read by a thermometer gives the same strain, and its level does not enter."""
-    clean = condition(bench.run, bench.logs(), bench.guide)
+    clean = condition(bench.run, bench.logs(), bench.priors)
     truth = np.log(bench.columns.pop("temp1") / 1569.9934) / 6.5e-6
     bench.columns["thermo"] = 21.7 + truth
     bench.units["thermo"] = "degC"
@@ -132,7 +132,7 @@ def test_thermometer_in_degrees_compensates_as_a_grating_does(bench):
     log = logs["fbg.txt"]
     thermo = replace(log.channels[0], name="thermo", unit="degC", values=bench.columns["thermo"])
     logs["fbg.txt"] = replace(log, channels=(*log.channels, thermo))
-    found = condition(run, logs, bench.guide)
+    found = condition(run, logs, bench.priors)
     difference = found.channel("fbg1").values - clean.channel("fbg1").values
     assert np.nanmax(np.abs(difference)) < 0.2e-6
     assert found.channel("thermo").values.mean() == pytest.approx(273.15 + 21.7, abs=0.5)
@@ -145,7 +145,7 @@ def test_without_compensation_the_uncertainty_is_stated_or_it_is_a_finding(bench
         for item in bench.run.rig.sensor
     )
     run = replace(bench.run, rig=replace(bench.run.rig, sensor=sensors))
-    found = condition(run, bench.logs(), bench.guide)
+    found = condition(run, bench.logs(), bench.priors)
     finding = next(item for item in found.findings if item.kind == "not_compensated")
     assert (finding.subject, finding.severity) == ("fbg1", severity)
     assert ("23.5 microstrain" if change else "20.3 microstrain") in finding.text

@@ -12,7 +12,7 @@ from tethertest.conditioning.plausible import check_rate
 from tethertest.conditioning.rest import RunWindows
 from tethertest.conditioning.spikes import CONTEXT
 from tethertest.errors import DataError
-from tethertest.pipeline.evaluation import rig_guide
+from tethertest.pipeline.evaluation import rig_priors
 from tethertest.pipeline.long_runs.columns import Scratch, Sizes, no_scratch
 from tethertest.pipeline.long_runs.finish import Final, final_channels
 from tethertest.pipeline.long_runs.flagging import Flagged, flagged, thinned
@@ -102,7 +102,7 @@ def _ingested(
     }
     thin, factors = _thin(run, logs, sizes)
     progress("clocks and windows", None)
-    rough = condition(_slower(run, logs, factors), {**sources.whole, **thin}, rig_guide(run))
+    rough = condition(_slower(run, logs, factors), {**sources.whole, **thin}, rig_priors(run))
     raws = {**sources.whole, **{key: log.record.log.raw for key, log in logs.items()}}
     fits = {fit.clock: fit for fit in rough.clocks}
     pairs = [(log, fits[log.record.log.entry.clock]) for log in logs.values()]
@@ -111,7 +111,7 @@ def _ingested(
     windows = RunWindows(rough.rest_before, rough.rest_after, rough.steady)
     progress("zeros", None)
     moving = [channel for channel in others if channel.kind == "displacement"]
-    zeroed, found = zeroed_sensors(pairs, moving, run.rig, rig_guide(run), windows, sizes)
+    zeroed, found = zeroed_sensors(pairs, moving, run.rig, rig_priors(run), windows, sizes)
     findings = [
         *_kept(rough.findings, names, {fit.clock for _, fit in pairs}),
         *_of_logs(pairs),

@@ -10,9 +10,9 @@ import numpy as np
 
 from tethertest.conditioning.condition import DEFAULT_NOISE, mapped
 from tethertest.conditioning.flags import sensor_of
-from tethertest.conditioning.guide import Guide
 from tethertest.conditioning.hum import with_hum_flagged
 from tethertest.conditioning.rest import RunWindows
+from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.conditioning.sensors import finished
 from tethertest.pipeline.long_runs.columns import Sizes
 from tethertest.pipeline.long_runs.flagging import Flagged
@@ -46,7 +46,7 @@ def zeroed_sensors(
     logs: Sequence[tuple[Flagged, ClockFit]],
     others: Sequence[Channel],
     rig: Rig,
-    guide: Guide,
+    priors: RigPriors,
     windows: RunWindows,
     sizes: Sizes,
 ) -> tuple[list[Zeroed], list[Finding]]:
@@ -58,7 +58,7 @@ def zeroed_sensors(
         The long logs and their clocks.
     others : sequence of Channel
         Displacements of other logs, which tell whether the base stands in the same place after the run.
-    rig, guide, windows
+    rig, priors, windows
         As `finished` takes them.
     sizes : Sizes
         Rows at once.
@@ -66,7 +66,7 @@ def zeroed_sensors(
     spans = [item for item in (windows.rest_before, windows.rest_after) if item is not None]
     sources = [(log, number, fit) for log, fit in logs for number in range(len(log.flags))]
     excerpts = [_excerpt(log, number, fit, spans, sizes) for log, number, fit in sources]
-    done, found = finished([*excerpts, *others], rig, guide, windows)
+    done, found = finished([*excerpts, *others], rig, priors, windows)
     names = {channel.name for channel in excerpts}
     findings = [item for item in found if item.subject in names]
     result: list[Zeroed] = []
@@ -76,7 +76,7 @@ def zeroed_sensors(
         slope = float(line[1] - line[0]) / float(time[1] - time[0]) if time[1] > time[0] else 0.0
         constant = Flag(int(np.bitwise_and.reduce(after.flags & ~before.flags)))
         if after.kind == "tension":
-            hum, hums = _hum(log, number, fit, spans, after, guide, rig, sizes)
+            hum, hums = _hum(log, number, fit, spans, after, priors, rig, sizes)
             constant |= hum
             findings += hums
         nothing = np.zeros(0)
@@ -162,7 +162,7 @@ def _hum(
     fit: ClockFit,
     spans: Sequence[Window],
     tared: Channel,
-    guide: Guide,
+    priors: RigPriors,
     rig: Rig,
     sizes: Sizes,
 ) -> tuple[Flag, list[Finding]]:
@@ -173,5 +173,5 @@ def _hum(
         return Flag.NONE, []
     excerpt = replace(mapped(excerpt, fit), kind=tared.kind, unit=tared.unit)
     noise = sensor_noise(sensor_of(rig, excerpt)) or DEFAULT_NOISE
-    judged, found = with_hum_flagged(excerpt, guide.mains, noise, spans)
+    judged, found = with_hum_flagged(excerpt, priors.mains, noise, spans)
     return (Flag.HUM if found else Flag.NONE), list(found) if judged.time.size else []

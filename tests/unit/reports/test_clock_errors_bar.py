@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tethertest.conditioning.bar import (
+from reports.clock_errors.bar import (
     Bar,
     bottom_tension_over_motion,
     standard_uncertainties,

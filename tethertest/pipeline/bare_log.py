@@ -14,9 +14,10 @@ from tethertest.conditioning.stamps import irregularity
 from tethertest.errors import DataError, QuantityError
 from tethertest.pipeline.read_bare import read_bare
 from tethertest.pipeline.shown_flags import SHOWN, with_shown_flags, without_codes
-from tethertest.records.arrays import FloatArray
+from tethertest.records.arrays import FloatArray, IndexArray, increases
 from tethertest.records.channel import Channel, Flag, RawChannel, RawLog, Source
 from tethertest.signal.noise import white_noise
+from tethertest.signal.series import some_steps
 from tethertest.units import Kind, UnitScale, channel_scale
 
 #: a slower channel in a table of a faster one fills this share of its rows
@@ -89,12 +90,14 @@ def bare_channels(
     flagged, said = with_shown_flags(channels)
     remarks += said + [text for channel in flagged if (text := _left_out(channel))]
     # noise is that of the samples that are used
-    quiet = [replace(channel, noise=white_noise(channel.values[channel.usable])) for channel in flagged]
+    quiet = [replace(channel, noise=white_noise(_used(channel))) for channel in flagged]
     return tuple(quiet), tuple(remarks)
 
 
 def _refuse_backward(raw: RawChannel) -> None:
     """Refuse a channel whose time goes back or stands still so often that the rest is not the record."""
+    if isinstance(_forward(raw.time), slice):
+        return
     time = raw.time[np.isfinite(raw.time)]
     if time.size < FEWEST_SAMPLES:
         return
@@ -119,6 +122,12 @@ def _left_out(channel: Channel) -> str:
     return f"channel {channel.name!r}: {words} of {channel.time.size} samples are left out"
 
 
+def _used(channel: Channel) -> FloatArray:
+    """Return the values of the usable samples."""
+    usable = channel.usable
+    return channel.values if usable.all() else channel.values[usable]
+
+
 def check_usable(channel: Channel) -> None:
     """Refuse a channel that nothing can be learnt from.
 
@@ -127,7 +136,7 @@ def check_usable(channel: Channel) -> None:
     DataError
         It has next to no samples, none that is usable, or all of them are alike.
     """
-    used = channel.values[channel.usable]
+    used = _used(channel)
     name = channel.name
     if channel.time.size < FEWEST_SAMPLES:
         message = f"channel {name!r} has {channel.time.size} samples, expected at least {FEWEST_SAMPLES}"
@@ -140,10 +149,24 @@ def check_usable(channel: Channel) -> None:
         raise DataError(message, "check that the sensor was connected, or take the channel out")
 
 
+def _forward(time: FloatArray) -> IndexArray | slice:
+    """Return the rows whose time goes forward."""
+    if np.isfinite(time).all() and increases(time):
+        return slice(None)
+    finite = np.flatnonzero(np.isfinite(time))
+    latest = np.maximum.accumulate(time[finite]) if finite.size else np.empty(0)
+    forward = np.ones(finite.size, dtype=bool)
+    forward[1:] = time[finite][1:] > latest[:-1]
+    return finite[forward]
+
+
 def _slower(values: FloatArray) -> slice | None:
     """Return the rows that hold values, if all do that stand at even steps and no others."""
-    known = np.flatnonzero(np.isfinite(values))
-    if known.size < FEWEST_SAMPLES or known.size == values.size:
+    finite = np.isfinite(values)
+    if finite.all():
+        return None
+    known = np.flatnonzero(finite)
+    if known.size < FEWEST_SAMPLES:
         return None
     step = round(float(known[-1] - known[0]) / (known.size - 1))
     if step < 2 or np.any(np.diff(known) % step) or np.mean(np.diff(known) == step) < EVEN:
@@ -153,8 +176,11 @@ def _slower(values: FloatArray) -> slice | None:
 
 def _held(values: FloatArray) -> slice | None:
     """Return the rows at which values change, if nearly all do at even steps and none in between."""
-    changes = np.flatnonzero(np.diff(values) != 0.0) + 1
-    if changes.size < FEWEST_SAMPLES or not np.isfinite(values).all():
+    changed = values[1:] != values[:-1]
+    if np.any(changed[1:] & changed[:-1]) or not np.isfinite(values).all():
+        return None
+    changes = np.flatnonzero(changed) + 1
+    if changes.size < FEWEST_SAMPLES:
         return None
     step = int(np.median(np.diff(changes)))
     if step < 2 or np.any(np.diff(changes) % step) or np.mean(np.diff(changes) == step) < HELD_EVEN:
@@ -180,14 +206,12 @@ def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
         remarks.append(f"channel {raw.name!r}: {error.problem}; its values stay as written")
     written, coded = without_codes(raw.values)
     remarks += [f"channel {raw.name!r}: {text}; they are left out" for text in coded]
-    values = written * scale.factor + scale.offset
-    finite = np.flatnonzero(np.isfinite(raw.time))
-    latest = np.maximum.accumulate(raw.time[finite]) if finite.size else np.empty(0)
-    forward = np.ones(finite.size, dtype=bool)
-    forward[1:] = raw.time[finite][1:] > latest[:-1]
-    kept = finite[forward]
-    if kept.size < raw.time.size:
-        count = raw.time.size - kept.size
+    values = written
+    values *= scale.factor
+    values += scale.offset
+    kept = _forward(raw.time)
+    count = raw.time.size - raw.time[kept].size
+    if count:
         remarks.append(f"channel {raw.name!r}: {count} samples whose time does not go forward are left out")
     slower, held = _slower(values[kept]), _held(values[kept])
     if held is not None:
@@ -195,25 +219,25 @@ def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
             f"the values change at every {held.step} rows only, as of a slower channel that is held between"
         )
         remarks.append(f"channel {raw.name!r}: {text}; the first of each is used")
-        kept = kept[held]
+        kept = np.arange(raw.time.size)[kept][held]
     elif slower is not None:
         text = f"one row of {slower.step} holds a value, as of a slower channel in the table of a faster one"
         remarks.append(f"channel {raw.name!r}: {text}; the empty rows are no holes")
-        kept = kept[slower]
+        kept = np.arange(raw.time.size)[kept][slower]
     time = raw.time[kept]
     quantised = quantised_steps(reader_of(time), time.size)
-    steps = np.diff(time)
     if quantised is not None:
         even = EvenRows.of(reader_of(time), time.size, quantised.longest)
         time = np.concatenate([rows for _, _, rows in even.blocks()])
         _, words = irregularity(quantised, 0.0, 0.0, coarse=False)
         remarks.append(f"channel {raw.name!r}: {words}: its time is rebuilt from the rows")
-    elif steps.size > 1:
-        low, usual, high = np.quantile(steps, (0.1, 0.5, 0.9))
+    elif time.size > 2:
+        low, usual, high = np.quantile(some_steps(time), (0.1, 0.5, 0.9))
         if high - low > JITTER * usual:
             text = f"its samples are {low:.4g} to {high:.4g} s apart; spectra take them as {usual:.4g} s"
             remarks.append(f"channel {raw.name!r}: {text}")
-    flags = np.where(np.isfinite(values[kept]), Flag.NONE, Flag.MISSING).astype(np.uint16)
+    flags = np.zeros(time.size, dtype=np.uint16)
+    flags[~np.isfinite(values[kept])] = np.uint16(Flag.MISSING)
     source = Source(log.path.name, log.sha256, log.format, raw.unit, "log")
     channel = Channel(raw.name, scale.kind, scale.unit, time, values[kept], flags, source=source)
     return replace(channel, noise=white_noise(channel.values)), remarks

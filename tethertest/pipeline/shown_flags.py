@@ -72,7 +72,7 @@ def without_codes(values: FloatArray) -> tuple[FloatArray, list[str]]:
     """
     result = values.copy()
     said = []
-    huge = np.isfinite(values) & (np.abs(values) > LARGEST)
+    huge = np.isfinite(values) & ((values > LARGEST) | (values < -LARGEST))
     if huge.any():
         result[huge] = np.nan
         first = values[huge][0]
@@ -82,8 +82,10 @@ def without_codes(values: FloatArray) -> tuple[FloatArray, list[str]]:
     for code in CODES:
         marked = values == code
         count = int(np.count_nonzero(marked))
+        if not count:
+            continue
         rest = result[np.isfinite(result) & ~marked]
-        if not count or not rest.size:
+        if not rest.size:
             continue
         low, high = float(rest.min()), float(rest.max())
         if max(low - code, code - high) > CODE_RANGES * max(high - low, abs(low), abs(high)):

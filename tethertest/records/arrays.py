@@ -12,6 +12,7 @@ from tethertest.signal.passes import blocks_of
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 FlagArray: TypeAlias = npt.NDArray[np.uint16]
+IndexArray: TypeAlias = npt.NDArray[np.intp]
 
 
 def increases(time: FloatArray) -> bool:

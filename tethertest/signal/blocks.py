@@ -8,11 +8,13 @@ period).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from tethertest.signal.passes import BLOCK
 from tethertest.signal.rotation import Times, times
 from tethertest.signal.series import sampling_interval
 
@@ -90,30 +92,36 @@ def block_means(
     ValueError
         Fewer than two usable samples.
     """
-    used_time, used_values = time[usable], values[usable]
-    if used_time.size < 2:
-        message = f"{used_time.size} usable samples, expected at least two"
+    count = int(np.count_nonzero(usable))
+    if count < 2:
+        message = f"{count} usable samples, expected at least two"
         raise ValueError(message)
+    first, last = int(np.argmax(usable)), usable.size - 1 - int(np.argmax(usable[::-1]))
     interval = sampling_interval(time)
     width = max(1, int(1.0 / (interval * slowest_rate) + 1e-9))
     step = width * interval
-    start = used_time[0] - 0.5 * interval
-    number = np.floor((used_time - start) / step).astype(np.intp)
-    starts = np.flatnonzero(np.diff(number, prepend=-1))
-    filled = number[starts]
-    counts = np.diff(np.append(starts, used_time.size))
-    total = int(number[-1]) + 1
+    start = time[first] - 0.5 * interval
+    total = int(np.floor((time[last] - start) / step)) + 1
     mean_time = start + (np.arange(total) + 0.5) * step
     means, weights = np.zeros(total), np.zeros(total)
-    mean_time[filled] = np.add.reduceat(used_time, starts) / counts
-    means[filled] = np.add.reduceat(used_values, starts) / counts
-    weights[filled] = counts / width
-    closed = _equally_spaced(used_time, number, interval, starts) & (counts == width) | (counts == 1) & (
-        width == 1
-    )
-    kept = ~closed[np.searchsorted(filled, number)]
-    irregular = filled[~closed]
-    irregular_starts = np.searchsorted(number[kept], irregular)
+    kept_times: list[FloatArray] = []
+    kept_numbers: list[IndexArray] = []
+    closed = np.ones(total, dtype=bool)
+    for used_time, used_values, number in _together(time, values, usable, start, step):
+        starts = np.flatnonzero(np.diff(number, prepend=-1))
+        filled = number[starts]
+        counts = np.diff(np.append(starts, used_time.size))
+        mean_time[filled] = np.add.reduceat(used_time, starts) / counts
+        means[filled] = np.add.reduceat(used_values, starts) / counts
+        weights[filled] = counts / width
+        closed[filled] = _equally_spaced(used_time, number, interval, starts) & (counts == width) | (
+            counts == 1
+        ) & (width == 1)
+        kept = ~closed[number]
+        kept_times.append(used_time[kept])
+        kept_numbers.append(number[kept])
+    irregular = np.flatnonzero(~closed)
+    irregular_starts = np.searchsorted(np.concatenate(kept_numbers), irregular)
     return Blocks(
         mean_time,
         means,
@@ -121,10 +129,32 @@ def block_means(
         interval,
         width,
         times(mean_time, step),
-        times(used_time[kept], interval),
+        times(np.concatenate(kept_times), interval),
         irregular_starts,
         irregular,
     )
+
+
+def _together(
+    time: FloatArray, values: FloatArray, usable: npt.NDArray[np.bool_], start: float, step: float
+) -> Iterator[tuple[FloatArray, FloatArray, IndexArray]]:
+    """Yield times, values and block numbers of the usable samples, many whole blocks at a time."""
+    row, size = 0, BLOCK
+    while row < time.size:
+        inside = usable[row : row + size]
+        used_time, used_values = time[row : row + size][inside], values[row : row + size][inside]
+        number = np.floor((used_time - start) / step).astype(np.intp)
+        whole = number.size
+        if row + size < time.size and number.size:
+            whole = int(np.searchsorted(number, number[-1]))  # what follows may belong to the last one
+            if not whole:
+                size *= 2
+                continue
+            row += int(np.searchsorted(time[row : row + size], used_time[whole]))
+        else:
+            row += size
+        if whole:
+            yield used_time[:whole], used_values[:whole], number[:whole]
 
 
 def _equally_spaced(
@@ -133,6 +163,6 @@ def _equally_spaced(
     """Return for each block with samples whether they stand one interval apart."""
     apart = np.abs(np.diff(time, prepend=time[0]) - interval) > SPACING_TOLERANCE * interval
     apart[starts] = False  # the step into a block does not belong to it
-    jittered = np.zeros(int(number[-1]) + 1, dtype=bool)
-    jittered[number[apart]] = True
-    return ~jittered[number[starts]]
+    jittered = np.zeros(int(number[-1] - number[0]) + 1, dtype=bool)
+    jittered[number[apart] - number[0]] = True
+    return np.asarray(~jittered[number[starts] - number[0]], dtype=bool)

@@ -47,7 +47,7 @@ def sampling_interval(time: Floats) -> float:
     time : (n,) float64
         Increasing [s], two or more.
     """
-    median = float(np.median(_some_steps(time)))
+    median = float(np.median(some_steps(time)))
     total, count = 0.0, 0
     for start, stop in blocks_of(time.size - 1):
         steps = np.diff(time[start : stop + 1])
@@ -56,8 +56,14 @@ def sampling_interval(time: Floats) -> float:
     return total / count if count else median
 
 
-def _some_steps(time: Floats) -> Floats:
-    """Return all steps between stamps, or as many of a long record as make a block."""
+def some_steps(time: Floats) -> Floats:
+    """Return all steps between stamps [s], or as many of a long record as make a block.
+
+    Parameters
+    ----------
+    time : (n,) float64
+        [s], two or more.
+    """
     if time.size - 1 <= BLOCK:
         return np.diff(time)
     rows = np.linspace(0, time.size - 2, BLOCK).astype(np.intp)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import chain
 from typing import Final
 
 import numpy as np
@@ -10,6 +12,7 @@ from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Window
 from tethertest.records.events import Cycle, CycleCount, Extremes
+from tethertest.signal.passes import blocks_of
 
 #: ranges below this many standard deviations of one sample are noise: a few thousand normal values span it
 NOISE_RANGE: Final = 8.0
@@ -78,22 +81,33 @@ def turning_points(values: FloatArray, gate: float) -> FloatArray:
     """Return the ends of a series and its reversals, without excursions smaller than `gate`."""
     if values.size < 3:
         return values
-    slopes = np.sign(np.diff(values))
-    moving = np.flatnonzero(slopes)
-    turns = moving[1:][slopes[moving[1:]] != slopes[moving[:-1]]]
-    points = np.concatenate(([values[0]], values[turns], [values[-1]]))
+    parts = chain((values[:1],), _reversals(values), (values[-1:],))
+    points = (point for part in parts for point in part.tolist())
     if gate <= 0.0:
-        return points
-    kept = [float(points[0])]
+        return np.array(list(points))
+    kept = [next(points)]
     direction = 0.0
-    for value in points[1:]:
-        step = float(value) - kept[-1]
+    for value in points:
+        step = value - kept[-1]
         if direction * step > 0.0:  # further the same way: the turn moves on
-            kept[-1] = float(value)
+            kept[-1] = value
         elif abs(step) >= gate:
-            kept.append(float(value))
+            kept.append(value)
             direction = np.sign(step)
     return np.array(kept)
+
+
+def _reversals(values: FloatArray) -> Iterator[FloatArray]:
+    """Yield the values at which a series turns, block by block."""
+    before = 0.0  # sign of the latest slope that is none of a level stretch
+    for start, stop in blocks_of(values.size - 1):
+        slopes = np.sign(np.diff(values[start : stop + 1]))
+        moving = np.flatnonzero(slopes)
+        if moving.size:
+            signs = slopes[moving]
+            previous = np.concatenate(([before or signs[0]], signs[:-1]))
+            yield values[start + moving[signs != previous]]
+            before = float(signs[-1])
 
 
 def _used(channel: Channel, window: Window | None) -> tuple[FloatArray, FloatArray]:
@@ -102,4 +116,4 @@ def _used(channel: Channel, window: Window | None) -> tuple[FloatArray, FloatArr
     if not usable.any():
         message = f"channel {channel.name!r} has no usable sample"
         raise DataError(message, "choose another window or take the channel out")
-    return part.time[usable], part.values[usable]
+    return (part.time, part.values) if usable.all() else (part.time[usable], part.values[usable])

@@ -30,8 +30,6 @@ def pushing_findings(channels: Sequence[Channel], rig: Rig) -> tuple[Finding, ..
     rig : Rig
         Of its cable, what is above a cell may stand on it when it is slack.
     """
-    from scipy.ndimage import median_filter
-
     weight = rig.cable.mass_per_length * rig.cable.length * rig.gravity
     found = []
     for channel in channels:

@@ -84,7 +84,7 @@ lint: setup  ## style, types, layers
 	$(BIN)/lint-imports
 
 FILES := run rig prototype scene
-COMMANDS := report analyze across inspect solve scale ingest export new
+COMMANDS := report analyze across inspect solve scale ingest export new bench
 
 schema: setup  ## write the JSON schemas of the files that people write, and of what commands print
 	for kind in $(FILES); do $(BIN)/tethertest schema $$kind > rigs/schema/$$kind.schema.json; done

@@ -46,7 +46,7 @@ def main(arguments: list[str]) -> None:
     more = ("## Targets", targets_table(targets))
     sys.stdout.write(speed_page(scenes, command, more))
     if asked.output is not None:
-        files = speed_files(scenes, command, page=more, json={"targets": targets, "peers": compared})
+        files = speed_files(scenes, command, page=more, more={"targets": targets, "peers": compared})
         if compared:
             files["moordyn.md"] = peers_page(compared, command).encode()
         write_files(asked.output, files)

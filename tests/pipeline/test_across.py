@@ -14,10 +14,10 @@ from typer.testing import CliRunner
 from tests.schema_check import faults
 from tethertest.cli import app
 from tethertest.cli.across import _print
+from tethertest.cli.schemas import schema_of
 from tethertest.errors import TethertestError
 from tethertest.pipeline.across import analyze_across, gathered
 from tethertest.pipeline.analysis_options import Options
-from tethertest.pipeline.schemas import schema_of
 from tethertest.records.across import Across, Direction, RunChannel, RunPart, StepVerdict
 from tethertest.records.analysis import MEASURED
 from tethertest.records.channel import Window

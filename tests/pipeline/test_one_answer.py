@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from tests.schema_check import faults
+from tethertest.cli.schemas import schema_of
 from tethertest.pipeline.across_runs import run_part
 from tethertest.pipeline.analysis_options import Options
 from tethertest.pipeline.analyze import analyze
 from tethertest.pipeline.ingest import ingest_run
 from tethertest.pipeline.report import make_report
-from tethertest.pipeline.schemas import schema_of
 from tethertest.records.across import RunPart
 from tethertest.records.analysis import MEASURED, REPLAYED, Analysis
 from tethertest.records.lines import ChannelLines

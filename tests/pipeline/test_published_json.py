@@ -11,13 +11,14 @@ from typing import Any
 import pytest
 
 from tests.schema_check import faults
+from tethertest.bench.speed import Chosen, Entry, Measured, SceneSpeed
+from tethertest.cli.schemas import COMMANDS, FILES, schema_of
 from tethertest.pipeline.draft_text import written_draft
 from tethertest.pipeline.export import export
 from tethertest.pipeline.ingest import Ingested, ingest_run
 from tethertest.pipeline.inspect import inspected
 from tethertest.pipeline.new_run import new_run
 from tethertest.pipeline.scale import scale_rig
-from tethertest.pipeline.schemas import COMMANDS, FILES, schema_of
 from tethertest.render.as_json import as_json
 
 ROOT = Path(__file__).parents[2]
@@ -87,6 +88,13 @@ def test_new(tmp_path: Path) -> None:
     found = as_json(written_draft(*new_run(tmp_path, rigs=RIGS)))
     assert faults(found, schema_of("new")) == []
     assert found["rig"] == "rig3m"
+
+
+def test_bench() -> None:
+    run = Entry("auto", 40, 0.012, float("nan"), -0.02, None)
+    chosen = Chosen("nonlinear", "leapfrog", "ok", 2e-3, None, None, run)
+    scene = SceneSpeed("taut", "a taut cable", "8 spectral elements", "others", 0.2, chosen, (run,))
+    assert faults(as_json(Measured((scene,))), schema_of("bench")) == []
 
 
 def test_a_key_too_many_or_too_few_is_seen() -> None:

@@ -14,7 +14,7 @@ import pytest
 
 from tests.schema_check import faults
 from tethertest.cli import main
-from tethertest.pipeline.schemas import schema_of
+from tethertest.cli.schemas import schema_of
 from tethertest.records.response import ErrorBudget, Field, Response, Status
 from tethertest.records.scene import Scene
 

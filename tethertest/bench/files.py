@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from typing import Any
 
 from tethertest.bench.speed import SceneSpeed
-from tethertest.bench.tables import as_json, speed_csv, speed_page
+from tethertest.bench.tables import speed_csv, speed_page
+from tethertest.render.as_json import as_json
 from tethertest.render.blocks import Picture
 
 
@@ -15,7 +17,7 @@ def speed_files(
     command: str,
     *,
     page: Sequence[str] = (),
-    json: dict[str, Sequence[Any]] | None = None,
+    more: dict[str, Sequence[Any]] | None = None,
 ) -> dict[str, bytes]:
     """Return file name -> content.
 
@@ -27,13 +29,15 @@ def speed_files(
         What measured them.
     page : sequence of str
         Paragraphs that stand before the tables of single scenes.
-    json : dict, optional
+    more : dict, optional
         Named lists of results beside the scenes.
     """
+    lists = {"scenes": scenes, **(more or {})}
+    results = {name: [as_json(result) for result in found] for name, found in lists.items()}
     return {
         "README.md": speed_page(scenes, command, page).encode(),
         "speed.csv": speed_csv(scenes).encode(),
-        "speed.json": (as_json({"scenes": scenes, **(json or {})}) + "\n").encode(),
+        "speed.json": (json.dumps(results, ensure_ascii=False, allow_nan=False) + "\n").encode(),
         "speed.png": speed_figure(scenes).png,
     }
 

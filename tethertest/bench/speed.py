@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from tethertest.bench.reference_for import Reference, is_sudden, reference_for
 from tethertest.bench.timing import timed
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
+from tethertest.records.described import Doc
 from tethertest.records.response import Response
 from tethertest.solver import solve
 from tethertest.solver.nonlinear.chain_march import chain_case, run_chain
@@ -42,24 +44,24 @@ SEGMENTS = (25, 50, 100, 200)
 class Entry:
     """One run of one model."""
 
-    curve: str  #: what the runs of one line in the figure have in common
-    cells: int
-    wall: float  #: [s]
-    error: float | None  #: RMS of the difference over that of the dynamic part; None is no number
-    peak: float | None  #: largest tension over the reference's, less 1
-    mean_peak: float | None  #: the same of the mean over `MEAN_WINDOW`; None where rows are too far apart
+    curve: Annotated[str, Doc("what the runs of one line in the figure have in common")]
+    cells: Annotated[int, Doc("of the mesh; 0 without one")]
+    wall: Annotated[float, Doc("time that the solve took [s]")]
+    error: Annotated[float | None, Doc("RMS of the difference over that of the dynamic part")]
+    peak: Annotated[float | None, Doc("largest tension over the reference's, less 1")]
+    mean_peak: Annotated[float | None, Doc("peak of the 20 ms mean; null: rows are too far apart")]
 
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
     """What the solver chose by itself, and its own word on the error."""
 
-    fidelity: str
-    scheme: str
-    status: str
-    numerical: float | None
-    model: float | None
-    spread: float | None
+    fidelity: Annotated[str, Doc("catenary, linear or nonlinear")]
+    scheme: Annotated[str, Doc("of the model")]
+    status: Annotated[str, Doc("ok, or what is wrong with the answer")]
+    numerical: Annotated[float | None, Doc("stated error from successive meshes, relative")]
+    model: Annotated[float | None, Doc("stated error against the next fidelity, relative")]
+    spread: Annotated[float | None, Doc("stated, from unknown damping and straightness, relative")]
     run: Entry
 
 
@@ -67,14 +69,21 @@ class Chosen:
 class SceneSpeed:
     """A scene's runs."""
 
-    scene: str
-    title: str
-    reference: str
-    reference_kind: str
-    reference_error: float | None  #: from the next coarser reference of its kind
+    scene: Annotated[str, Doc("name of the scene's file")]
+    title: Annotated[str, Doc("name in the file")]
+    reference: Annotated[str, Doc("what all runs are held against")]
+    reference_kind: Annotated[str, Doc("how the reference solves")]
+    reference_error: Annotated[float | None, Doc("from the next coarser reference of its kind")]
     chosen: Chosen
-    entries: tuple[Entry, ...]
-    remark: str = ""
+    entries: Annotated[tuple[Entry, ...], Doc("every model and mesh that was run")]
+    remark: Annotated[str, Doc("how a variant differs from the scene")] = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What ``bench --json`` prints."""
+
+    scenes: Annotated[tuple[SceneSpeed, ...], Doc("in the order given, variants after their scene")]
 
 
 def measure_cases(cases: Iterable[Case], *, with_peers: bool = False) -> tuple[SceneSpeed, ...]:

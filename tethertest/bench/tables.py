@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict
-from typing import Any
 
 from tethertest.bench.speed import Entry, SceneSpeed
 
@@ -70,12 +67,6 @@ def speed_csv(scenes: Sequence[SceneSpeed]) -> str:
             written = ("" if number is None else f"{number:.6g}" for number in numbers)
             writer.writerow((scene.scene, scene.reference, run.curve, run.cells, *written))
     return stream.getvalue()
-
-
-def as_json(content: dict[str, Sequence[Any]]) -> str:
-    """Return named lists of results as one JSON object."""
-    plain = {name: [asdict(result) for result in results] for name, results in content.items()}
-    return json.dumps(plain, ensure_ascii=False, allow_nan=False)
 
 
 def markdown_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -27,8 +27,8 @@ def bench(
     """
     from tethertest.bench.case import load_cases
     from tethertest.bench.files import speed_files
-    from tethertest.bench.speed import measure_cases
-    from tethertest.bench.tables import as_json as to_json
+    from tethertest.bench.speed import Measured, measure_cases
+    from tethertest.render.as_json import json_line
     from tethertest.render.write import write_files
 
     found = measure_cases(load_cases(scenes), with_peers=peers)
@@ -36,7 +36,7 @@ def bench(
     for path in write_files(output, speed_files(found, " ".join(words))):
         typer.echo(str(path), err=True)
     if as_json:
-        typer.echo(to_json({"scenes": found}))
+        typer.echo(json_line(Measured(found)))
         return
     for scene in found:
         chosen, run = scene.chosen, scene.chosen.run

@@ -25,10 +25,11 @@ class SchemaKind(StrEnum):
     INGEST = "ingest"
     EXPORT = "export"
     NEW = "new"
+    BENCH = "bench"
 
 
 def schema(kind: Annotated[SchemaKind, typer.Argument(help="A kind of file, or a command.")]) -> None:
     """Print the JSON schema of run, rig, prototype or scene files, or of what a command's --json prints."""
-    from tethertest.pipeline.schemas import schema_of
+    from tethertest.cli.schemas import schema_of
 
     typer.echo(json.dumps(schema_of(kind.value), indent=2, ensure_ascii=False))

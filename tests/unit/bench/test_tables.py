@@ -17,7 +17,7 @@ SCENE = SceneSpeed(
 
 
 def test_files_say_what_was_found_and_how_they_were_made() -> None:
-    files = speed_files([SCENE], "tethertest bench", page=("## More", "to say"), json={"more": [RUN]})
+    files = speed_files([SCENE], "tethertest bench", page=("## More", "to say"), more={"more": [RUN]})
     assert files.keys() == {"README.md", "speed.csv", "speed.json", "speed.png"}
     page = files["README.md"].decode()
     assert "Written by `tethertest bench`" in page

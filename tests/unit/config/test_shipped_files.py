@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tethertest.pipeline.schemas import schema_of
+from tethertest.cli.schemas import schema_of
 from tethertest.readers import load_prototype, load_prototype_of, load_rig, load_scene
 from tethertest.readers.config.toml import read_document
 

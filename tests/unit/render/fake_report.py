@@ -152,25 +152,14 @@ def _conditioned(channels: tuple[Channel, ...]) -> ConditionedRun:
         ),
         ClockFit("encoder", "daq", -0.4127, 0.0009, -22.7e-6, 6.4e-6, "fundamental of the drive", ()),
     )
+    note, warning = Severity.NOTE, Severity.WARNING
+    lost = "the grating's peak was not seen; later columns slipped by one"
+    swapped = "the stamps say 9 May; run.toml says 5 September"
     findings = (
-        Finding("tension_top", "spike", "12 single samples far from their neighbours", Severity.NOTE, (), 12),
-        Finding(
-            "tension_top", "stuck", "the value repeats for 0.40 s", Severity.WARNING, ((48.0, 48.4),), 400
-        ),
-        Finding(
-            "fbg4",
-            "lost",
-            "the grating's peak was not seen; later columns slipped by one",
-            Severity.WARNING,
-            ((30.37, 36.36),),
-            600,
-        ),
-        Finding(
-            "interrogator",
-            "day_month_swapped",
-            "the stamps say 9 May; run.toml says 5 September",
-            Severity.WARNING,
-        ),
+        Finding("tension_top", "spike", "12 single samples far from their neighbours", note, (), 12),
+        Finding("tension_top", "stuck", "the value repeats for 0.40 s", warning, ((48.0, 48.4),), 400),
+        Finding("fbg4", "lost", lost, warning, ((30.37, 36.36),), 600),
+        Finding("interrogator", "day_month_swapped", swapped, warning),
     )
     return ConditionedRun(
         channels, clocks, findings, Window(0.0, 5.0), Window(87.0, 89.9), replace(STEADY, reason="found")

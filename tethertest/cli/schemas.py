@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from tethertest.bench.speed import Measured
 from tethertest.pipeline.draft import WrittenDraft
 from tethertest.pipeline.export import Export
 from tethertest.pipeline.ingest import Ingested
@@ -31,6 +32,7 @@ COMMANDS: Final[dict[str, Any]] = {
     "ingest": Ingested,
     "export": Export,
     "new": WrittenDraft,
+    "bench": Measured,
 }
 #: command -> keys that are not always there: files hold what is printed but for the paths of what was written
 _MAY_LACK: Final = {"report": ("paths",), "analyze": ("paths",), "across": ("paths",)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field as a_field
 
@@ -71,3 +72,13 @@ def field_of_rows(time: FloatArray, position: FloatArray, tension: FloatArray) -
     maximum[1:] = np.maximum(maximum[1:], tension[starts[1:] - 1])
     minimum[1:] = np.minimum(minimum[1:], tension[starts[1:] - 1])
     return Field(time[starts], position, maximum, minimum)
+
+
+def beside(fields: Sequence[Field]) -> Field:
+    """Return fields of the same times, each of some stations, as one."""
+    return Field(
+        fields[0].time,
+        np.concatenate([field.position for field in fields]),
+        np.concatenate([field.maximum for field in fields], axis=1),
+        np.concatenate([field.minimum for field in fields], axis=1),
+    )

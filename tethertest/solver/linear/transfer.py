@@ -7,6 +7,7 @@ referred to the end that they leave and only decay from there, so nothing overfl
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -19,7 +20,7 @@ from tethertest.records.scene import Bottom, MeasuredMotion, Scene
 from tethertest.solver.linear.axial_waves import axial_fields, axial_share, output_times
 from tethertest.solver.linear.coupled_solve import continued
 from tethertest.solver.linear.transform import TransformDrive, TransformLine
-from tethertest.solver.solution import Solution, field_of_rows
+from tethertest.solver.solution import Solution, beside, field_of_rows
 from tethertest.solver.statics.rest import rest_state
 from tethertest.solver.terms import per_direction
 
@@ -27,6 +28,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 #: places of the field, both ends included
 _STATIONS = 41
+#: so many of them are transformed at once: all would take several times the memory of what is kept
+_AT_ONCE = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,18 +99,20 @@ def _driven(
     return drive, drive.spectrum(line.frequencies(factor))
 
 
-def _tension_along(scene: Scene, s: ComplexArray, stations: int) -> ComplexArray:
-    """Return the tension per unit of bottom displacement at so many places from end to end, (m, n)."""
+def _tension_along(scene: Scene, s: ComplexArray, stations: int) -> Iterator[ComplexArray]:
+    """Yield the tension per unit of bottom displacement from end to end, some stations (m, n) at a time."""
     waves = _EndWaves.of(scene, s)
     decay = np.exp(-waves.number * (waves.length / (stations - 1)))
     rising = np.empty((stations, s.size), dtype=np.complex128)
     rising[0] = 1.0
     for station in range(1, stations):  # a product in place of an exponential: eight times as fast
         np.multiply(rising[station - 1], decay, out=rising[station])
-    tension = rising[::-1] * (waves.reflection * rising[-1])
-    tension -= rising
-    tension *= waves.stiffness * waves.number * waves.size
-    return np.asarray(tension)
+    returned, size = waves.reflection * rising[-1], waves.stiffness * waves.number * waves.size
+    for first in range(0, stations, _AT_ONCE):
+        tension = rising[::-1][first : first + _AT_ONCE] * returned
+        tension -= rising[first : first + _AT_ONCE]
+        tension *= size
+        yield tension
 
 
 def tension_transfer(scene: Scene, frequency: FloatArray, gauges: FloatArray) -> ComplexArray:
@@ -176,19 +181,25 @@ def run_axial_transform(
         return np.ascontiguousarray((kept * growth).T)
 
     gauges = np.asarray(output.gauges, dtype=np.float64)
-    stations = np.linspace(0.0, 1.0, _STATIONS) if with_field else gauges
+    stations = np.linspace(0.0, 1.0, _STATIONS)
     here = axial_transfer(scene, s, np.append(gauges, 1.0))
     displacement = here.displacement[:, :-1].T
     at_gauges = rest.bottom_tension + gauges * rest.weight + inverted(here.tension[:, :-1].T)
-    tension = at_gauges
     if with_field:
-        tension = rest.bottom_tension + stations * rest.weight + inverted(_tension_along(scene, s, _STATIONS))
+        resting = rest.bottom_tension + stations * rest.weight
+        parts = []
+        for number, part in enumerate(_tension_along(scene, s, _STATIONS)):
+            there = slice(number * _AT_ONCE, number * _AT_ONCE + len(part))
+            parts.append(field_of_rows(time, stations[there], resting[there] + inverted(part)))
+        field = beside(parts)
+    else:
+        field = field_of_rows(time, gauges, at_gauges)
     return Solution(
         time=time,
         tension=at_gauges,
         strain=inverted(here.strain[:, :-1].T),
         platform_position=inverted(here.displacement[:, -1:].T)[:, 0],
-        field=field_of_rows(time, stations, tension),
+        field=field,
         time_step=drive.step,
         steps_done=time.size,
         steps=time.size,

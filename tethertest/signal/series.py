@@ -15,6 +15,8 @@ Booleans: TypeAlias = npt.NDArray[np.bool_]
 
 #: steps that differ from the median by more than this share of it are gaps or jitter, not rounding
 _GAP: Final = 0.25
+#: steps of which the longest is at most this many times the shortest have no gap in this sense
+_EVEN: Final = 1.2
 
 
 class Series(Protocol):
@@ -47,7 +49,10 @@ def sampling_interval(time: Floats) -> float:
     time : (n,) float64
         Increasing [s], two or more.
     """
-    median = float(np.median(some_steps(time)))
+    some = some_steps(time)
+    if some.size == time.size - 1 and np.max(some) <= _EVEN * np.min(some):
+        return float(np.mean(some))  # nearly always: all are usual, whatever their median
+    median = float(np.median(some))
     total, count = 0.0, 0
     for start, stop in blocks_of(time.size - 1):
         steps = np.diff(time[start : stop + 1])

@@ -122,8 +122,7 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
         return UnitScale(Kind.OTHER, text, 1.0)
     unit = si_unit(target)
     if found == "ratio" and not (_VOLT_OVER_VOLT.fullmatch(text) or is_voltage_ratio(quantity)):
-        message = f"unit {written!r} is no output of a bridge, volt over volt"
-        raise QuantityError(message, "log it in mV/V: um/m holds the amplifier's gauge factor too")
+        raise _no_ratio(written)
     if dimension != unit.dimensionality:
         raise _wrong_dimension(written, str(dimension), found)
     return UnitScale(Kind(found), target, float(quantity.to(unit).magnitude))
@@ -132,8 +131,12 @@ def channel_scale(written: str, kind: str | None = None) -> UnitScale:
 def _common_scale(text: str, written: str, kind: str) -> UnitScale | None:
     """Return the scale of a common unit, None where pint is to be asked."""
     target = KINDS.get(kind)
-    if not target or (kind == "ratio" and text != "mV/V"):
+    if not target:
         return None
+    if kind == "ratio" and text != "mV/V":
+        if common_dimension(text) is None:
+            return None
+        raise _no_ratio(written)
     factor = common_factor(text, target)
     if factor is not None:
         return UnitScale(Kind(kind), target, factor)
@@ -141,6 +144,11 @@ def _common_scale(text: str, written: str, kind: str) -> UnitScale | None:
     if found is not None and wanted is not None and found != wanted:
         raise _wrong_dimension(written, dimension_text(found), kind)
     return None
+
+
+def _no_ratio(written: str) -> QuantityError:
+    message = f"unit {written!r} is no output of a bridge, volt over volt"
+    return QuantityError(message, "log it in mV/V: um/m holds the amplifier's gauge factor too")
 
 
 def _wrong_dimension(written: str, dimension: str, kind: str) -> QuantityError:

@@ -37,6 +37,7 @@ SI_UNITS: Final = {
     "N m^2": SIUnit({"M": 1, "L": 3, "T": -2}, {"N m^2": 1.0}),
     "Pa": SIUnit({"M": 1, "L": -1, "T": -2}, {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9}),
     "V": SIUnit({"M": 1, "L": 2, "T": -3, "A": -1}, {"V": 1.0, "mV": 1e-3}),
+    "count": SIUnit({"[logger_count]": 1}, {"count": 1.0}),
 }  # fmt: skip
 
 _NAMES: Final = {"L": "[length]", "M": "[mass]", "T": "[time]", "K": "[temperature]", "A": "[current]"}
@@ -52,7 +53,9 @@ def dimension_text(dimension: dict[str, int]) -> str:
     if not dimension:
         return "dimensionless"
     powers = {name: f" ** {abs(power)}" if abs(power) != 1 else "" for name, power in dimension.items()}
-    over = " * ".join(f"{_NAMES[name]}{powers[name]}" for name, power in dimension.items() if power > 0)
+    over = " * ".join(
+        f"{_NAMES.get(name, name)}{powers[name]}" for name, power in dimension.items() if power > 0
+    )
     under = [f" / {_NAMES[name]}{powers[name]}" for name, power in dimension.items() if power < 0]
     return "".join((over or "1", *under))
 

@@ -79,3 +79,10 @@ def test_a_drive_at_twice_a_natural_frequency_may_pump_it() -> None:
     assert resonance_notes(0.7, pendulum, 0.1) == ()
     assert resonance_notes(0.65, pendulum, 1.0) != ()  # the tongue widens with the modulation
     assert "is near pendulum" in resonance_notes(0.29, pendulum)[0]
+
+
+def test_sixteen_samples_are_the_fewest_of_a_blind_search(channel: Maker) -> None:
+    time = np.arange(16.0)
+    assert blind_search(channel(time, cosine(time, 0.3)), Window(0.0, 15.0)).bandwidth == 0.25
+    with pytest.raises(DataError, match="15 samples in the window"):
+        blind_search(channel(time, cosine(time, 0.3)), Window(0.0, 14.5))

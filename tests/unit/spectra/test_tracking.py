@@ -94,3 +94,58 @@ def test_few_cycles_explain_what_a_full_regression_does(channel: Maker, phase: f
     weights = fit.blocks.weights
     gained = float(weights @ without.residuals**2 - weights @ full.residuals**2)
     assert loosen(fit, HALF).explained(np.array([offset]))[0] == pytest.approx(gained, rel=2e-3)
+
+
+@pytest.mark.parametrize("share", [-1.7, -0.8, 0.35, 0.8, 1.7])
+def test_the_free_frequency_is_found_to_a_hundredth_of_a_resolution(
+    channel: Maker, time: FloatArray, window: Window, share: float
+) -> None:
+    length = float(time[-1])
+    free = 0.2 * np.cos(2.0 * np.pi * (0.125 + share / length) * time + 0.4)
+    fit = fit_orders(
+        channel_blocks(channel(time, cosine(time, DRIVE) + free), window, DRIVE, 50.0), DRIVE, ORDERS[:2], 0.0
+    )
+    seen = track(fit, HALF, 0.0)
+    assert (seen.frequency - 0.125) * length == pytest.approx(share, abs=0.01)
+    assert seen.cycles == pytest.approx((seen.frequency - 0.125) * fit.blocks.length)
+
+
+def test_an_uncertain_drive_excuses_its_part_of_the_gain(
+    channel: Maker, time: FloatArray, window: Window
+) -> None:
+    values = cosine(time, DRIVE) + cosine(time, 0.1265, 0.2, 1.0)
+    values += 0.05 * np.random.default_rng(7).standard_normal(time.size)
+    fit = fitted(channel(time, values), window)
+    sure, unsure = (track(fit, HALF, error) for error in (0.0, 2e-3))
+    bound = sure.frequency_error
+    # half an order is off by half of what the drive is
+    assert unsure.frequency_error == pytest.approx(np.hypot(bound, 1e-3))
+    assert unsure.gain == pytest.approx(sure.gain / (1.0 + (1e-3 / bound) ** 2))
+    turned = 2.0 * np.pi * 1e-3 * fit.blocks.length
+    assert unsure.drift_error == pytest.approx(np.hypot(sure.drift_error, turned))
+
+
+def test_the_bound_of_a_free_frequency_is_that_of_white_noise(
+    channel: Maker, time: FloatArray, window: Window
+) -> None:
+    """sqrt(6) sigma / (pi T A sqrt(N)), and the slopes' errors follow from the same noise."""
+    found = [followed(channel, time, window, cosine(time, 0.125, 0.2, 0.6), seed) for seed in range(6)]
+    length = time.size / 30.0
+    bound = np.sqrt(6.0) * 0.05 / (np.pi * length * 0.2 * np.sqrt(time.size))
+    assert np.mean([seen.frequency_error for seen in found]) == pytest.approx(bound, rel=0.12)
+    # growth and drift over the record: sqrt(24 / N) sigma / A
+    slope = np.sqrt(24.0 / time.size) * 0.05 / 0.2
+    assert np.mean([seen.growth_error for seen in found]) == pytest.approx(slope, rel=0.12)
+    assert np.mean([seen.drift_error for seen in found]) == pytest.approx(slope, rel=0.12)
+    # freeing one frequency gains one chi-squared of one degree
+    assert np.mean([seen.gain for seen in found]) < 4.0
+
+
+def test_an_amplitude_that_grows_over_the_record_grows_by_as_much(
+    channel: Maker, time: FloatArray, window: Window
+) -> None:
+    for growth in (-0.6, 0.4):
+        moving = 1.0 + growth * (time / time[-1] - 0.5)
+        seen = followed(channel, time, window, moving * cosine(time, 0.125, 0.4, 0.6))
+        assert seen.growth == pytest.approx(growth, abs=0.03)
+        assert seen.decays is (growth < 0.0)

@@ -334,3 +334,12 @@ def test_orders_of_the_limits_are_compared_in_order_of_frequency() -> None:
         "order_amplitude 3",
         "order_amplitude 10",
     ]
+
+
+def test_phases_of_moved_replays_are_held_against_that_of_the_replay_itself() -> None:
+    moved = tuple(channel(cosine(2.2, phase)) for phase in (1.55, 1.60))
+    held = ordered(
+        replayed=channel(cosine(2.2, 1.57)), replayed_lines=lines(line("1", 2.2, 1.57)), moved=moved
+    )
+    phase = named(order_metrics(held), "order_phase 1")
+    assert phase.uncertainty == pytest.approx(np.hypot(0.02, 0.05), rel=1e-4)

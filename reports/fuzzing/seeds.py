@@ -22,7 +22,7 @@ import openpyxl
 import scipy.io
 from nptdms import ChannelObject, TdmsWriter
 
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 ROWS: Final = 24
 STEP: Final = 0.25  #: [s]
@@ -40,7 +40,7 @@ class Seed:
     values: np.ndarray  #: (rows, columns)
     row_lines: tuple[str, ...] = ()  #: of a text log: the line of each row
     names_line: str = ""  #: line that holds the names, "" where each row has its own
-    settings: Log | None = None
+    settings: Log = DEFAULT
     lines_between: int = 0  #: header lines between the names and the first row
 
     @property

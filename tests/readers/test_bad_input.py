@@ -6,11 +6,12 @@ import pytest
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
+from tethertest.records.run import DEFAULT
 
 GOOD = "time [s],F_top [N]\n0.000,5.10\n0.001,5.12\n0.002,5.11\n"
 
 
-def refused(path, match, settings=None):
+def refused(path, match, settings=DEFAULT):
     with pytest.raises(FileFormatError, match=match) as caught:
         read_log(path, settings)
     assert caught.value.remedy

@@ -9,6 +9,7 @@ from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
 from tethertest.readers.formats import delimited
 from tethertest.readers.streaming import stream_log
+from tethertest.records.run import DEFAULT
 
 TEXT = "time [s],F [N]\n" + "".join(f"{row / 10},{row % 7}\n" for row in range(60))
 CHANGED = "changed while it was read"
@@ -47,7 +48,7 @@ def meddled(monkeypatch, log):
     def meddle(change, *, refuse=False):
         read = delimited.read
 
-        def slow(path, settings=None):
+        def slow(path, settings=DEFAULT):
             result = read(path, settings)
             change(path)
             if refuse:

@@ -15,6 +15,7 @@ from tethertest.errors import FileFormatError
 from tethertest.readers import identify, read_log
 from tethertest.readers.containers import sheet, workbook
 from tethertest.readers.guards import limits
+from tethertest.records.run import DEFAULT
 
 T = np.arange(20) / 50.0
 F = 5.0 + np.sin(T)
@@ -60,7 +61,7 @@ def in_sheet(old, new):
     return change
 
 
-def refused(path, words, settings=None):
+def refused(path, words, settings=DEFAULT):
     with pytest.raises(FileFormatError, match=words):
         read_log(path, settings)
 

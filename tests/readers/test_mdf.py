@@ -14,6 +14,7 @@ from tethertest.errors import FileFormatError
 from tethertest.readers import identify, read_log
 from tethertest.readers.formats import mdf
 from tethertest.readers.guards import mdf_blocks, sandboxed_read
+from tethertest.records.run import DEFAULT
 
 T = np.arange(40) / 50.0
 F = 5.0 + np.sin(T)
@@ -39,7 +40,7 @@ def made(tmp_path):
     return maker
 
 
-def refused(path, words, settings=None):
+def refused(path, words, settings=DEFAULT):
     with pytest.raises(FileFormatError, match=words):
         read_log(path, settings)
 

@@ -15,6 +15,7 @@ import pytest
 from tethertest.errors import FileFormatError
 from tethertest.readers import READERS, formats, identify, read_log, registry
 from tethertest.readers.text.document import Head, read_head
+from tethertest.records.run import DEFAULT
 
 LVM_HEAD = "LabVIEW Measurement\t\nWriter_Version\t2\n"
 
@@ -34,7 +35,7 @@ def test_readers_share_one_signature(reader):
     sniff, read = inspect.signature(reader.sniff), inspect.signature(reader.read)
     assert list(sniff.parameters) == ["head"]
     assert list(read.parameters) == ["path", "settings"]
-    assert read.parameters["settings"].default is None
+    assert read.parameters["settings"].default is DEFAULT
     assert read.return_annotation == "RawLog"
 
 

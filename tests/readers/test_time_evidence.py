@@ -113,7 +113,7 @@ def test_halves_of_the_day_in_a_column_of_their_own_are_refused(write, cells):
 )
 def test_dotted_dates(write, settings, day, order, start):
     text = rows("Time;F [N]", lambda k: f"{day} 10:00:{k:02d};{k % 7}")
-    assert read_log(write(text), settings(date_order=order) if order else None).start == start
+    assert read_log(write(text), settings(date_order=order)).start == start
 
 
 def test_a_dotted_date_that_may_begin_with_the_year_is_refused(write):

@@ -19,7 +19,7 @@ from tethertest.readers.inspect import described_channels
 from tethertest.readers.registry import identified
 from tethertest.records.channel import RawLog
 from tethertest.records.inspected import ChannelSeen, FewStamps, Inspected, LogSeen, Refusal, RunSeen
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 from tethertest.store import is_store
 
 
@@ -69,7 +69,7 @@ def inspected(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -
         A setting is wrong, whatever the file.
     """
     settings = given_settings(path, words)
-    if settings is not None and (path.is_dir() or (path.is_file() and is_store(path))):
+    if words and (path.is_dir() or (path.is_file() and is_store(path))):
         raise settings_of_a_run(path)
     try:
         return inspect_path(path, rigs, words)
@@ -77,7 +77,7 @@ def inspected(path: Path, rigs: Path | None = None, words: Sequence[str] = ()) -
         return refusal(path, error, settings)
 
 
-def refusal(path: Path, error: TethertestError, settings: Log | None = None) -> Refusal:
+def refusal(path: Path, error: TethertestError, settings: Log = DEFAULT) -> Refusal:
     """Return why a file is refused, with the keys of a log that was read where they are known.
 
     Parameters

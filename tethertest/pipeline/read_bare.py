@@ -43,8 +43,8 @@ def read_bare(path: Path, words: Sequence[str] = ()) -> RawLog:
     try:
         log = read_log(path, settings)
     except FileFormatError as error:
-        raise bare_error(error, given=settings is not None) from error
-    if settings is None:
+        raise bare_error(error, given=bool(words)) from error
+    if not words:
         return log
     remarks = tuple(remark.replace(_HERE, f"in {SET}") for remark in log.remarks)
     return replace(log, remarks=remarks, reason=log.reason.replace(_RUN_FILE, SET))

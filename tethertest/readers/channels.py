@@ -39,7 +39,7 @@ def unique_names(names: Iterable[str]) -> tuple[tuple[str, ...], tuple[str, ...]
 
 
 def with_units(
-    path: Path, channels: Iterable[RawChannel], settings: Log | None, others: Collection[str] = ()
+    path: Path, channels: Iterable[RawChannel], settings: Log, others: Collection[str] = ()
 ) -> tuple[RawChannel, ...]:
     """Return the channels with the units that the run file gives.
 
@@ -49,7 +49,7 @@ def with_units(
         The log, for messages.
     channels : iterable of RawChannel
         As read.
-    settings : Log, optional
+    settings : Log
         Its `units` are taken where the name is a channel's.
     others : collection of str
         Further names of the file that may have a unit, such as the time column.
@@ -60,7 +60,7 @@ def with_units(
         The settings name a channel that the file has not.
     """
     found = tuple(channels)
-    units = settings.units if settings is not None else {}
+    units = settings.units
     known = {channel.name for channel in found} | set(others)
     for name in units:
         if name not in known:

@@ -28,7 +28,7 @@ from tethertest.readers.formats.archive import ArchiveReader
 from tethertest.readers.text.document import Head, nul_bytes, read_head
 from tethertest.readers.text.encoding import detect_encoding
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 
 class Reader(Protocol):
@@ -40,12 +40,12 @@ class Reader(Protocol):
         """Return why this reader claims the file, or None."""
         ...
 
-    def read(self, path: Path, settings: Log | None = None) -> RawLog:
+    def read(self, path: Path, settings: Log = DEFAULT) -> RawLog:
         """Read the whole log."""
         ...
 
 
-def _read_member(path: Path, settings: Log | None) -> RawLog:
+def _read_member(path: Path, settings: Log) -> RawLog:
     """Read what was packed in an archive."""
     return read_log(path, settings)
 
@@ -100,14 +100,14 @@ _FOREIGN: Final = (
 )
 
 
-def identify(path: Path | str, settings: Log | None = None) -> Reader:
+def identify(path: Path | str, settings: Log = DEFAULT) -> Reader:
     """Return the reader of a file.
 
     Parameters
     ----------
     path : Path or str
         The log.
-    settings : Log, optional
+    settings : Log
         Its `format` names a reader; that reader must recognise the file.
 
     Raises
@@ -118,13 +118,13 @@ def identify(path: Path | str, settings: Log | None = None) -> Reader:
     return identified(path, settings)[0]
 
 
-def identified(path: Path | str, settings: Log | None = None) -> tuple[Reader, str]:
+def identified(path: Path | str, settings: Log = DEFAULT) -> tuple[Reader, str]:
     """Return the reader of a file and why it was chosen; see `identify`."""
-    head = read_head(Path(path), settings.encoding if settings is not None else None)
+    head = read_head(Path(path), settings.encoding)
     claims = [
         (reader, reason) for reader in READERS if reader is not GENERIC and (reason := reader.sniff(head))
     ]
-    wanted = settings.format if settings is not None else None
+    wanted = settings.format
     if wanted is not None:
         return _forced(head, wanted, claims)
     if len(claims) > 1:
@@ -139,14 +139,14 @@ def identified(path: Path | str, settings: Log | None = None) -> tuple[Reader, s
     return GENERIC, reason
 
 
-def read_log(path: Path | str, settings: Log | None = None) -> RawLog:
+def read_log(path: Path | str, settings: Log = DEFAULT) -> RawLog:
     """Read a log with the reader that recognises it.
 
     Parameters
     ----------
     path : Path or str
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         The log's entry in run.toml; its settings are needed only where the file itself is ambiguous.
 
     Returns
@@ -165,10 +165,8 @@ def read_log(path: Path | str, settings: Log | None = None) -> RawLog:
         return replace(reader.read(Path(path), settings), reason=reason, fingerprint=before)
 
 
-def refuse_keys(path: Path, reader: Reader, settings: Log | None) -> None:
+def refuse_keys(path: Path, reader: Reader, settings: Log) -> None:
     """Refuse keys of run.toml that the reader does not use."""
-    if settings is None:
-        return
     given = {
         "table": settings.table is not None,
         "columns": bool(settings.columns),

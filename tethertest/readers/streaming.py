@@ -12,14 +12,14 @@ from tethertest.readers.formats import delimited, tdms
 from tethertest.readers.registry import identified, refuse_keys
 from tethertest.readers.text.textlog import Progress
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 #: a piece of so many rows and a dozen channels takes some ten megabytes
 ROWS: Final = 100_000
 
 
 def stream_log(
-    path: Path | str, settings: Log | None = None, *, rows: int = ROWS, progress: Progress | None = None
+    path: Path | str, settings: Log = DEFAULT, *, rows: int = ROWS, progress: Progress | None = None
 ) -> Iterator[RawLog]:
     """Yield a log in consecutive pieces that together are what `read_log` returns.
 
@@ -37,7 +37,7 @@ def stream_log(
     ----------
     path : Path or str
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         As for `read_log`.
     rows : int
         Rows of a piece; the last may have fewer. Logs that are neither plain tables nor TDMS come in one
@@ -58,7 +58,7 @@ def stream_log(
     return _pieces(Path(path), settings, rows, progress)
 
 
-def _pieces(path: Path, settings: Log | None, rows: int, progress: Progress | None) -> Iterator[RawLog]:
+def _pieces(path: Path, settings: Log, rows: int, progress: Progress | None) -> Iterator[RawLog]:
     with unchanged(path) as before:
         reader, reason = identified(path, settings)
         refuse_keys(path, reader, settings)

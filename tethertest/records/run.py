@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime as dt
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from tethertest.records.described import Doc
 from tethertest.records.quantity import SI
@@ -65,6 +65,10 @@ class Log:
     def key(self) -> str:
         """The file, and the table where one is named: no other log of the run has the same."""
         return self.file if self.table is None else f"{self.file}:{self.table}"
+
+
+#: the settings of a log that needs none
+DEFAULT: Final = Log(file="", clock="")
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,13 +10,13 @@ from tethertest.errors import RunFileError
 from tethertest.readers.config.given import given_settings
 from tethertest.readers.config.log_checks import setting_problems
 from tethertest.readers.config.structure import structure
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 PATH = Path("folder/daq.csv")
 
 
 def test_without_words_nothing_is_set():
-    assert given_settings(PATH, ()) is None
+    assert given_settings(PATH, ()) is DEFAULT
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from tethertest.errors import RunFileError
 from tethertest.readers.config.log_checks import setting_problems
 from tethertest.readers.config.problems import Problem, dotted, news, suggestion
 from tethertest.readers.config.structure import field_types, structure
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 #: keys of a log's entry that mean nothing without a run and its rig
 _OF_A_RUN: Final = ("file", "clock", "channels")
@@ -21,7 +21,7 @@ _UNITS: Final = "units."
 _EXAMPLE: Final = "write --set KEY=VALUE, such as --set date_order=dmy or --set units.F_top=kN"
 
 
-def given_settings(path: Path, words: Sequence[str]) -> Log | None:
+def given_settings(path: Path, words: Sequence[str]) -> Log:
     """Return the entry that a log would have in run.toml, from words such as ``date_order=dmy``.
 
     Parameters
@@ -35,8 +35,8 @@ def given_settings(path: Path, words: Sequence[str]) -> Log | None:
 
     Returns
     -------
-    Log or None
-        None where there are no words. It has no clock and no channels: these need a rig.
+    Log
+        It has no clock and no channels: these need a rig.
 
     Raises
     ------
@@ -44,14 +44,14 @@ def given_settings(path: Path, words: Sequence[str]) -> Log | None:
         A word has no such key or no such value, or two do not fit together: all of them in one message.
     """
     if not words:
-        return None
+        return DEFAULT
     data: dict[str, Any] = {"file": path.name, "clock": _NO_CLOCK}
     for word in words:
         _add(data, word)
     log, problems = structure(Log, data)
     if log is not None:
         problems += news(setting_problems((), log), problems)
-    if problems:
+    if log is None or problems:
         raise _told(problems, data)
     return log
 

@@ -25,7 +25,7 @@ class _Part:
     names: tuple[str, ...] = ()
 
 
-def assembled(tree: Tree, name: str, leaves: Sequence[Leaf], facts: Facts, settings: Log | None) -> Table:
+def assembled(tree: Tree, name: str, leaves: Sequence[Leaf], facts: Facts, settings: Log) -> Table:
     """Load the arrays of one length as the columns of a table.
 
     Parameters
@@ -37,7 +37,7 @@ def assembled(tree: Tree, name: str, leaves: Sequence[Leaf], facts: Facts, setti
         channels of run.toml, settle which length is the table's.
     facts : Facts
         What the file says beside them.
-    settings : Log, optional
+    settings : Log
         `columns` names the columns of the one matrix.
 
     Raises
@@ -63,11 +63,11 @@ def assembled(tree: Tree, name: str, leaves: Sequence[Leaf], facts: Facts, setti
     return Table(tree.path, columns, named, facts, remarks=tuple(remarks))
 
 
-def _length(tree: Tree, name: str, leaves: Sequence[Leaf], settings: Log | None) -> int:
+def _length(tree: Tree, name: str, leaves: Sequence[Leaf], settings: Log) -> int:
     vectors = [leaf for leaf in leaves if len(leaf.shape) == 1]
-    wanted = settings.time if settings is not None else None
-    mapped = settings.channels if settings is not None else {}
-    columns = settings.columns if settings is not None else ()
+    wanted = settings.time
+    mapped = settings.channels
+    columns = settings.columns
     for settled in (
         [leaf for leaf in vectors if leaf.name == wanted],
         [leaf for leaf in vectors if is_time_name(leaf.name, leaf.unit)],
@@ -119,7 +119,7 @@ def _square(tree: Tree, leaf: Leaf) -> FileFormatError:
     return FileFormatError(message, "export the channels as vectors with names", path=tree.path)
 
 
-def _part(tree: Tree, leaf: Leaf, length: int, settings: Log | None, remarks: list[str]) -> _Part | None:
+def _part(tree: Tree, leaf: Leaf, length: int, settings: Log, remarks: list[str]) -> _Part | None:
     if len(leaf.shape) == 1:
         if leaf.shape[0] == length:
             return _Part(leaf, 1)
@@ -137,9 +137,9 @@ def _part(tree: Tree, leaf: Leaf, length: int, settings: Log | None, remarks: li
     return None
 
 
-def _with_names(tree: Tree, name: str, parts: list[_Part], settings: Log | None) -> tuple[list[_Part], bool]:
+def _with_names(tree: Tree, name: str, parts: list[_Part], settings: Log) -> tuple[list[_Part], bool]:
     """Return the parts with the names of their columns, and whether these are more than numbers."""
-    given = settings.columns if settings is not None else ()
+    given = settings.columns
     nameless = [part for part in parts if len(part.leaf.shape) == 2 and len(part.leaf.names) != part.width]
     if given:
         if len(nameless) != 1:

@@ -39,14 +39,14 @@ class Candidate:
         return f"{self.name!r} ({', '.join(sizes[:3])}{more})"
 
 
-def table_of(tree: Tree, settings: Log | None) -> tuple[Table, Log | None]:
+def table_of(tree: Tree, settings: Log) -> tuple[Table, Log]:
     """Choose the table and load it.
 
     Parameters
     ----------
     tree : Tree
         What the file holds.
-    settings : Log, optional
+    settings : Log
         Its `table` names a group, struct, array or object; its `time` may be a path too.
 
     Returns
@@ -60,20 +60,20 @@ def table_of(tree: Tree, settings: Log | None) -> tuple[Table, Log | None]:
         The file holds no table or several, or what the settings name is not there.
     """
     candidates = _candidates(tree)
-    if settings is not None and settings.table is not None:
+    if settings.table is not None:
         chosen = _named(tree, candidates, settings.table)
     else:
         chosen = _only(tree, candidates, settings)
-    if settings is not None and settings.time is not None:
+    if settings.time is not None:
         chosen, settings = _with_time(tree, chosen, settings, settings.time)
-    elif len(chosen.leaves) == 1 and (settings is None or settings.rate is None):
+    elif len(chosen.leaves) == 1 and settings.rate is None:
         chosen = _with_sibling(chosen)
     if chosen.records:
         columns: tuple[Column, ...] = chosen.records.load()
         table = Table(tree.path, columns, named=True, facts=chosen.branch.facts)
     else:
         table = assembled(tree, chosen.name, chosen.leaves, chosen.branch.facts, settings)
-        settings = None if settings is None else replace(settings, columns=())
+        settings = replace(settings, columns=())
     remarks = [f"{name!r} {why} and is left out" for name, why in list(tree.left_out.items())[:_SHOWN]]
     return replace(table, remarks=(*table.remarks, *remarks)), settings
 
@@ -106,13 +106,13 @@ def _named(tree: Tree, candidates: list[Candidate], wanted: str) -> Candidate:
     raise FileFormatError(message, _remedy(candidates), path=tree.path)
 
 
-def _only(tree: Tree, candidates: list[Candidate], settings: Log | None) -> Candidate:
+def _only(tree: Tree, candidates: list[Candidate], settings: Log) -> Candidate:
     if not candidates:
         left_out = "; ".join(f"{name!r} {why}" for name, why in list(tree.left_out.items())[:_SHOWN])
         message = f"{tree.what} holds no array of numbers" + (f": {left_out}" if left_out else "")
         raise FileFormatError(message, "export the channels as plain vectors of numbers", path=tree.path)
     fitting = candidates
-    if len(candidates) > 1 and settings is not None and settings.time is not None:
+    if len(candidates) > 1 and settings.time is not None:
         time = settings.time.strip("/")
         fitting = [
             item

@@ -20,7 +20,7 @@ _EXACT = 2**53
 _SHOWN = 8
 
 
-def log_of(name: str, table: Table, settings: Log | None, *, encoding: str = "") -> RawLog:
+def log_of(name: str, table: Table, settings: Log, *, encoding: str = "") -> RawLog:
     """Return a table as a log.
 
     Parameters
@@ -29,7 +29,7 @@ def log_of(name: str, table: Table, settings: Log | None, *, encoding: str = "")
         NAME of the reader.
     table : Table
         The one table that was chosen.
-    settings : Log, optional
+    settings : Log
         The log's entry in run.toml.
     encoding : str
         Encoding of a file of text.

@@ -86,7 +86,7 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(repr(name) for name in known[:_SHOWN]) + more
 
 
-def with_column_names(table: Table, settings: Log | None) -> Table:
+def with_column_names(table: Table, settings: Log) -> Table:
     """Return the table with the names that run.toml gives, each of them once.
 
     Raises
@@ -98,7 +98,7 @@ def with_column_names(table: Table, settings: Log | None) -> Table:
     if width > COLUMNS:
         message = f"found {width} columns, expected at most {COLUMNS}"
         raise table.error(message, "export the channels as columns; perhaps rows and columns are swapped")
-    wanted = settings.columns if settings is not None else ()
+    wanted = settings.columns
     if wanted:
         if table.named:
             message = f"run.toml gives columns, but the table has names: {listed(table.names)}"
@@ -113,7 +113,7 @@ def with_column_names(table: Table, settings: Log | None) -> Table:
     return replace(table, columns=columns, remarks=(*table.remarks, *renamed))
 
 
-def refuse_settings(path: Path, settings: Log | None, what: str, *, allowed: Sequence[str] = ()) -> None:
+def refuse_settings(path: Path, settings: Log, what: str, *, allowed: Sequence[str] = ()) -> None:
     """Refuse settings of text logs that mean nothing for this file.
 
     Raises
@@ -121,8 +121,6 @@ def refuse_settings(path: Path, settings: Log | None, what: str, *, allowed: Seq
     FileFormatError
         One of them is given.
     """
-    if settings is None:
-        return
     given = {
         "encoding": settings.encoding is not None,
         "decimal": settings.decimal is not None,

@@ -44,14 +44,14 @@ class Axis:
     remarks: tuple[str, ...] = ()
 
 
-def time_axis(table: Table, settings: Log | None) -> Axis:
+def time_axis(table: Table, settings: Log) -> Axis:
     """Find the time of a table.
 
     Parameters
     ----------
     table : Table
         With its final names.
-    settings : Log, optional
+    settings : Log
         Its `time` names the column, its `rate` stands where there is none; without them the time is a column
         that is called so, that holds stamps, that has a unit of time, or that increases in even steps.
 
@@ -60,9 +60,9 @@ def time_axis(table: Table, settings: Log | None) -> Axis:
     FileFormatError
         The column named is not there, no column or more than one can be the time, or its cells are no time.
     """
-    if settings is not None and settings.rate is not None:
+    if settings.rate is not None:
         return _counted(table, 1.0 / settings.rate, settings.rate, f"rate = {settings.rate:g} Hz in run.toml")
-    if settings is not None and settings.time is not None:
+    if settings.time is not None:
         column = table.column(settings.time)
         if column is None:
             message = f"run.toml says time = {toml_text(settings.time)}, which the table does not have"
@@ -198,9 +198,9 @@ def _increasing(table: Table) -> tuple[Column | None, str]:
     return column, f"{column.name!r} alone increases strictly, by {usual:g}: it is taken as the time"
 
 
-def _read(table: Table, column: Column, settings: Log | None, remarks: tuple[str, ...]) -> Axis:
-    zone = time_zone_of(settings.time_zone if settings is not None else None, table.path)
-    unit = settings.units.get(column.name, column.unit) if settings is not None else column.unit
+def _read(table: Table, column: Column, settings: Log, remarks: tuple[str, ...]) -> Axis:
+    zone = time_zone_of(settings.time_zone, table.path)
+    unit = settings.units.get(column.name, column.unit)
     if isinstance(column.cells, list):
         return _stamped(table, column, settings, zone, remarks)
     unit = unit or unit_in_name(column.name)
@@ -232,7 +232,7 @@ def _read(table: Table, column: Column, settings: Log | None, remarks: tuple[str
 
 
 def _stamped(
-    table: Table, column: Column, settings: Log | None, zone: dt.tzinfo | None, remarks: tuple[str, ...]
+    table: Table, column: Column, settings: Log, zone: dt.tzinfo | None, remarks: tuple[str, ...]
 ) -> Axis:
     cells = list(column.cells)
     used = {column.name}
@@ -247,7 +247,7 @@ def _stamped(
         if not cell.strip():
             message = f"the time {column.name!r} is blank"
             raise table.error(message, "export the log again", row)
-    order = settings.date_order if settings is not None else None
+    order = settings.date_order
     try:
         stamps = parse_stamps(cells, table.path, range(len(cells)), order)
     except FileFormatError as error:

@@ -14,7 +14,7 @@ from tethertest.readers.containers.workbook import is_in
 from tethertest.readers.guards.zips import ZIP_MAGIC, member_stream, members, opened_zip
 from tethertest.readers.text.document import Head
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "archive"
 
@@ -24,7 +24,7 @@ class ArchiveReader:
 
     NAME = NAME
 
-    def __init__(self, read_member: Callable[[Path, Log | None], RawLog]) -> None:
+    def __init__(self, read_member: Callable[[Path, Log], RawLog]) -> None:
         self._read_member = read_member
 
     def sniff(self, head: Head) -> str | None:
@@ -32,14 +32,14 @@ class ArchiveReader:
         is_archive = head.data.startswith(ZIP_MAGIC) and not is_in(head.path)
         return "the first bytes are a zip archive's" if is_archive else None
 
-    def read(self, path: Path, settings: Log | None = None) -> RawLog:
+    def read(self, path: Path, settings: Log = DEFAULT) -> RawLog:
         """Read one member of a zip archive.
 
         Parameters
         ----------
         path : Path
             The archive.
-        settings : Log, optional
+        settings : Log
             Its `table` is the member, or ``member/table`` where the member is a container itself.
 
         Returns
@@ -64,7 +64,7 @@ class ArchiveReader:
 
 
 @contextmanager
-def _named_member(path: Path, settings: Log | None) -> Iterator[tuple[str, Path, Log | None]]:
+def _named_member(path: Path, settings: Log) -> Iterator[tuple[str, Path, Log]]:
     """Unpack the member that the settings name; yield its name, where it lies and its own settings."""
     with path.open("rb") as stream:
         if stream.read(len(ZIP_MAGIC)) != ZIP_MAGIC:
@@ -77,7 +77,7 @@ def _named_member(path: Path, settings: Log | None) -> Iterator[tuple[str, Path,
             raise FileFormatError(message, "unpack it and name the file that is the log", path=path)
         if len(found) == 1:
             raise _nested(path)
-        wanted = settings.table if settings is not None else None
+        wanted = settings.table
         name = next((name for name in found if wanted == name or (wanted or "").startswith(f"{name}/")), None)
         if name is None:
             asked = f", and run.toml says table = {toml_text(wanted)}" if wanted else ""
@@ -100,7 +100,7 @@ def _named_member(path: Path, settings: Log | None) -> Iterator[tuple[str, Path,
             if member.read_bytes()[: len(ZIP_MAGIC)] == ZIP_MAGIC:
                 raise _nested(path)
             rest = (wanted or "")[len(name) + 1 :]
-            yield name, member, None if settings is None else replace(settings, table=rest or None)
+            yield name, member, replace(settings, table=rest or None)
 
 
 def _nested(path: Path) -> FileFormatError:

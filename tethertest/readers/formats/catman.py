@@ -18,7 +18,7 @@ from tethertest.readers.text.table import Rows, check_widths, find_rows, read_co
 from tethertest.readers.timeunits import SECONDS
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "catman"
 #: cells of a cut row that its message shows
@@ -38,14 +38,14 @@ def sniff(head: Head) -> str | None:
     return None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read a catman ASCII export.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Settings of the run file: encoding, decimal, date_order, time_zone, rate, units.
 
     Returns
@@ -60,7 +60,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         The header is incomplete or contradicts itself or the rows, a row is cut, or the number of rows is not
         the one that ``MAXLINES`` states.
     """
-    document = read_document(path, settings.encoding if settings is not None else None)
+    document = read_document(path, settings.encoding)
     header = read_header(document)
     text = document.from_line(header.first_line)
     rows = find_rows(
@@ -70,10 +70,9 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     _check_rows(rows, width, header)
     columns = read_columns(rows, width, header.names, unused={width})
     stamps = _starts(path, header, settings)
-    zone = time_zone_of(settings.time_zone if settings is not None else None, path)
+    zone = time_zone_of(settings.time_zone, path)
     names, renamed = unique_names(header.names)
-    rate = settings.rate if settings is not None else None
-    times, remarks = _channel_times(header, columns.numbers, rows, rate)
+    times, remarks = _channel_times(header, columns.numbers, rows, settings.rate)
     shift = np.zeros(width) if stamps is None else stamps.seconds()
     channels = []
     for column, (name, unit) in enumerate(zip(names, header.units, strict=True)):
@@ -104,9 +103,9 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     )
 
 
-def _decimal(text: bytes, separator: str, settings: Log | None) -> str:
+def _decimal(text: bytes, separator: str, settings: Log) -> str:
     """Find the decimal sign: catman writes no thousands, so a comma between tabs is one."""
-    if settings is not None and settings.decimal is not None:
+    if settings.decimal is not None:
         return settings.decimal
     return "," if separator != "," and b"," in text else "."
 
@@ -145,12 +144,12 @@ def _check_rows(rows: Rows, width: int, header: Header) -> None:
         )
 
 
-def _starts(path: Path, header: Header, settings: Log | None) -> Stamps | None:
+def _starts(path: Path, header: Header, settings: Log) -> Stamps | None:
     """Return T0 of every column; a date with slashes is read as the plainly written one, if there is one."""
     texts = [text or header.starts[0] for text in header.starts]
     if not texts[0]:
         return None
-    order: str | None = settings.date_order if settings is not None else None
+    order: str | None = settings.date_order
     lines = [header.start_line] * len(texts)
     if order is None and header.date is not None and "/" in texts[0]:
         _year, month, day = header.date

@@ -13,7 +13,7 @@ from tethertest.readers.text.table_log import TableLog, open_table
 from tethertest.readers.text.textlog import Progress
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "delimited"
 #: characters of the first line that a person is shown
@@ -29,14 +29,14 @@ def sniff(head: Head) -> str | None:
     return f"text that no format reader claims; it begins with {shown!r}"
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read a CSV, TSV or space-aligned text log.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Settings of the run file; they are needed only where the file is ambiguous.
 
     Returns
@@ -68,7 +68,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return replace(_log(table, settings, arrays, encoding, remarks), row_lines=tuple(row_lines))
 
 
-def stream(path: Path, settings: Log | None, rows: int, progress: Progress | None = None) -> Iterator[RawLog]:
+def stream(path: Path, settings: Log, rows: int, progress: Progress | None = None) -> Iterator[RawLog]:
     """Yield the log in pieces of so many rows; together they are what `read` returns.
 
     Raises
@@ -88,7 +88,7 @@ def stream(path: Path, settings: Log | None, rows: int, progress: Progress | Non
 
 def _log(
     table: TableLog,
-    settings: Log | None,
+    settings: Log,
     arrays: Sequence[FloatArray],
     encoding: str,
     remarks: tuple[str, ...],

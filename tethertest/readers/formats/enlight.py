@@ -26,17 +26,17 @@ class Preamble:
     culture: str  #: such as "pt-PT", "" where it is not written
     keys_found: bool
 
-    def decimal(self, first_row: str, settings: Log | None) -> str:
+    def decimal(self, first_row: str, settings: Log) -> str:
         """Return the decimal sign; the columns are separated by tabs, so a comma in a row is one."""
-        if settings is not None and settings.decimal is not None:
+        if settings.decimal is not None:
             return settings.decimal
         if self.culture:
             return "." if self.culture.lower().startswith(_POINT_CULTURES) else ","
         return "," if "," in first_row.partition("\t")[2] else "."
 
-    def date_order(self, settings: Log | None) -> str | None:
+    def date_order(self, settings: Log) -> str | None:
         """Return the order of dates that do not begin with the year, None where the file leaves it open."""
-        if settings is not None and settings.date_order is not None:
+        if settings.date_order is not None:
             return settings.date_order
         if not self.culture:
             return None

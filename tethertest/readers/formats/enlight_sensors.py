@@ -16,7 +16,7 @@ from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "enlight-sensors"
 
@@ -35,14 +35,14 @@ def sniff(head: Head) -> str | None:
     return None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read an ENLIGHT Sensors export.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Settings of the run file: encoding, decimal, date_order, time_zone, units.
 
     Returns
@@ -56,7 +56,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     FileFormatError
         A row is cut or ragged, a cell is no number, or a date can be read two ways.
     """
-    document = read_document(path, settings.encoding if settings is not None else None)
+    document = read_document(path, settings.encoding)
     preamble = find_preamble(document.body[:HEAD_BYTES].decode(errors="replace").split("\n"))
     if preamble is None:
         message = "found no row of names that begins with 'Timestamp'"
@@ -86,7 +86,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return RawLog(
         path=path,
         format=NAME,
-        start=stamps.start(time_zone_of(settings.time_zone if settings is not None else None, path)),
+        start=stamps.start(time_zone_of(settings.time_zone, path)),
         channels=with_units(path, channels, settings),
         encoding=document.encoding,
         decimal=decimal,

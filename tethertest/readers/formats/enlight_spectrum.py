@@ -8,7 +8,7 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.formats.enlight import find_preamble
 from tethertest.readers.text.document import Head
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "enlight-spectrum"
 
@@ -21,7 +21,7 @@ def sniff(head: Head) -> str | None:
     return None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Refuse the file.
 
     Raises

@@ -13,7 +13,7 @@ from tethertest.readers.containers.table import listed, refuse_settings, toml_te
 from tethertest.readers.containers.workbook import is_in, opened_workbook
 from tethertest.readers.text.document import Head
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "excel"
 
@@ -23,14 +23,14 @@ def sniff(head: Head) -> str | None:
     return "the archive holds 'xl/workbook.xml'" if is_in(head.path) else None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read one sheet of an Excel workbook (.xlsx, .xlsm).
 
     Parameters
     ----------
     path : Path
         The workbook.
-    settings : Log, optional
+    settings : Log
         Its `table` is the name of the sheet, needed where several hold numbers; its `skip_rows` passes over
         rows above the names.
 
@@ -47,8 +47,8 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         or several do; formulas were never calculated; cells are merged or of mixed kinds.
     """
     refuse_settings(path, settings, "an Excel workbook", allowed=("date_order", "skip_rows"))
-    skip = settings.skip_rows if settings is not None else 0
-    wanted = settings.table if settings is not None else None
+    skip = settings.skip_rows
+    wanted = settings.table
     with opened_workbook(path) as (book, parts):
         named = {worksheet.title: worksheet for worksheet in book.worksheets}
         shown = [title for title, worksheet in named.items() if worksheet.sheet_state == "visible"]

@@ -18,7 +18,7 @@ from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import Columns, Rows, check_widths, find_rows, read_columns
 from tethertest.records.arrays import BoolArray, frozen
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "fbgs"
 _NUMBER: Final = "Linenumber"
@@ -32,14 +32,14 @@ def sniff(head: Head) -> str | None:
     return None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read an FBGS ILLumiSense export.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Settings of the run file: encoding, decimal, date_order, time_zone, rate, units.
 
     Returns
@@ -53,7 +53,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     FileFormatError
         A row is cut or ragged, a cell is no number, line numbers do not increase, or stamps contradict them.
     """
-    document = read_document(path, settings.encoding if settings is not None else None)
+    document = read_document(path, settings.encoding)
     header = document.lines(1)[0].rstrip("\t").split("\t")
     names, renamed = unique_names(cell.strip() for cell in header)
     if _NUMBER not in names or _STATUS not in names:
@@ -67,15 +67,15 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         message = f"the first row names no column of {missing}"
         raise FileFormatError(message, "export the log again from ILLumiSense", path=path, line=1)
     text = document.from_line(2)
-    decimal = settings.decimal if settings is not None else None
+    decimal = settings.decimal
     rows = find_rows(path, text, 2, "\t", decimal or ("," if b"," in text[:20000] else "."))
     check_widths(rows, width, width + 1 if rows.counts[0] > width else width)
     columns = read_columns(rows, width, names, texts={*stamps_at, status}, unused={width})
     cells = [
         " ".join(filter(None, pair)) for pair in zip(*(columns.texts[c] for c in stamps_at), strict=True)
     ]
-    stamps = parse_stamps(cells, path, rows.lines, settings.date_order if settings is not None else None)
-    stated = settings.rate if settings is not None else None
+    stamps = parse_stamps(cells, path, rows.lines, settings.date_order)
+    stated = settings.rate
     clock = line_clock(columns.numbers[number], stamps.seconds(), path, rows.lines, stated)
     written = np.column_stack([columns.numbers[column] for column in gratings])
     labels = [names[column] for column in gratings]
@@ -92,7 +92,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return RawLog(
         path=path,
         format=NAME,
-        start=stamps.start(time_zone_of(settings.time_zone if settings is not None else None, path)),
+        start=stamps.start(time_zone_of(settings.time_zone, path)),
         channels=with_units(path, channels, settings),
         encoding=document.encoding,
         decimal=rows.decimal,
@@ -131,7 +131,7 @@ def _with_unseen(wavelengths: BoolArray, written: np.ndarray) -> BoolArray:
     return result
 
 
-def _unit_remarks(wavelengths: BoolArray, settings: Log | None) -> list[str]:
+def _unit_remarks(wavelengths: BoolArray, settings: Log) -> list[str]:
     if wavelengths.all():
         return [
             "the export states no units; its values lie in an interrogator's band and are wavelengths in nm"
@@ -139,6 +139,6 @@ def _unit_remarks(wavelengths: BoolArray, settings: Log | None) -> list[str]:
     others = "the others have" if wavelengths.any() else "its values are no wavelengths and have"
     number = int(np.count_nonzero(wavelengths))
     some = f"{number} columns are wavelengths in nm, " if number else ""
-    if settings is not None and settings.units:
+    if settings.units:
         return [f"the export states no units; {some}{others} the unit that the run file gives, if any"]
     return [f"the export states no units; {some}{others} none until run.toml gives units for this log"]

@@ -17,7 +17,7 @@ from tethertest.readers.containers.tree import Tree
 from tethertest.readers.guards.sandboxed_read import read_in_sandbox
 from tethertest.readers.text.document import Head, read_bytes
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "hdf5"
 MAGIC: Final = b"\x89HDF\r\n\x1a\n"
@@ -30,14 +30,14 @@ def sniff(head: Head) -> str | None:
     return "the first bytes are HDF5's" if head.data.startswith(MAGIC) else None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read an HDF5 log.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Its `table` is a group or data set, its `time` a data set, by name or path.
 
     Returns

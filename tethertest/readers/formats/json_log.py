@@ -24,7 +24,7 @@ from tethertest.readers.text.document import Head, read_document
 from tethertest.readers.text.stamps import stamp_kind
 from tethertest.readers.text.table import MISSING_TOKENS
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "json"
 #: longer whole numbers may not be int64
@@ -43,14 +43,14 @@ def sniff(head: Head) -> str | None:
     return "the text begins as JSON" if _BEGINNING.match(text) else None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read a JSON log.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip; also one object on each line.
-    settings : Log, optional
+    settings : Log
         Its `table` is the path of keys (``"daq/data"``), its `columns` name the values of a row.
 
     Returns
@@ -65,7 +65,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         text among numbers, or the table or its time is not evident.
     """
     refuse_settings(path, settings, "a JSON log", allowed=("encoding", "date_order", "skip_rows"))
-    document = read_document(path, settings.encoding if settings is not None else None)
+    document = read_document(path, settings.encoding)
     if len(document.body) > JSON_BYTES:
         message = f"the JSON log has {len(document.body) >> 20} MB, expected at most {JSON_BYTES >> 20} MB"
         raise FileFormatError(message, "split the log, or export it as text or HDF5", path=path)
@@ -77,7 +77,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         message = "the JSON log has half of a pair of escapes (\\ud800), which is no letter"
         raise FileFormatError(message, "export the names again, in UTF-8", path=path)
     content = _parsed(path, document.body)
-    skip = settings.skip_rows if settings is not None else 0
+    skip = settings.skip_rows
     left_out: dict[str, str] = {}
     branches = tuple(_branches(path, content, skip, left_out))
     tree = Tree(path, "the JSON log", "/", branches, left_out)

@@ -21,7 +21,7 @@ from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import RawChannel, RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "lvm"
 #: an X column whose steps vary by less than this share is one of even samples, else Delta_X means nothing
@@ -42,14 +42,14 @@ def sniff(head: Head) -> str | None:
     return None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read a LabVIEW measurement file.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Settings of the run file: encoding, decimal, separator, date_order, time_zone, units.
 
     Returns
@@ -62,15 +62,15 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     FileFormatError
         The header is cut, a segment has fewer rows than it states, or a row is cut.
     """
-    document = read_document(path, settings.encoding if settings is not None else None)
+    document = read_document(path, settings.encoding)
     header, separator, decimal = _file_header(document, settings)
     segments = find_segments(document, separator, header)
-    zone = time_zone_of(settings.time_zone if settings is not None else None, path)
-    order = settings.date_order if settings is not None else None
+    zone = time_zone_of(settings.time_zone, path)
+    order = settings.date_order
     first = segments[0]
     names, remarks = unique_names(first.names)
     notes = list(remarks)
-    if not header.get("Decimal_Separator") and (settings is None or settings.decimal is None):
+    if not header.get("Decimal_Separator") and settings.decimal is None:
         sign = {".": "point", ",": "comma"}[decimal]
         notes.append(f"the header states no Decimal_Separator; the numbers have a decimal {sign}")
     start, date_order, zero = None, "", None
@@ -132,7 +132,7 @@ def _refuse_other_units(path: Path, number: int, segment: Segment, first: Segmen
             raise FileFormatError(message, "split the log at this line", path=path, line=segment.names_line)
 
 
-def _file_header(document: Document, settings: Log | None) -> tuple[dict[str, str], str, str]:
+def _file_header(document: Document, settings: Log) -> tuple[dict[str, str], str, str]:
     """Return the keys of the file header, the separator and the decimal sign."""
     lines = document.lines(200)
     separator = next(
@@ -152,9 +152,9 @@ def _file_header(document: Document, settings: Log | None) -> tuple[dict[str, st
         )
     separator = _SEPARATORS.get(keys.get("Separator", "").lower(), separator)
     decimal = keys.get("Decimal_Separator", "")
-    if settings is not None and settings.separator is not None:
+    if settings.separator is not None:
         separator = _SEPARATORS.get(settings.separator.lower(), settings.separator)
-    if settings is not None and settings.decimal is not None:
+    if settings.decimal is not None:
         decimal = settings.decimal
     return keys, separator, decimal if decimal in {".", ","} else _decimal_by_content(document, separator)
 

@@ -17,7 +17,7 @@ from tethertest.readers.formats.hdf5 import opened
 from tethertest.readers.guards.sandboxed_read import read_in_sandbox
 from tethertest.readers.text.document import Head, read_bytes
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "matlab"
 _HEADER_BYTES: Final = 128
@@ -43,14 +43,14 @@ def sniff(head: Head) -> str | None:
     return "the first bytes are those of a MATLAB file of version 4" if _is_level_4(head.data) else None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read a MATLAB log.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Its `table` is a struct or a matrix, its `time` a vector, by name or path (``"daq.t"``).
 
     Returns

@@ -25,7 +25,7 @@ from tethertest.readers.text.stamps import time_zone_of
 from tethertest.readers.timeunits import SECONDS
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import RawChannel, RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "mdf"
 _MAGIC: Final = b"MDF     "
@@ -46,14 +46,14 @@ def sniff(head: Head) -> str | None:
     return "the first bytes are 'MDF'" if head.data.startswith((_MAGIC, _UNFINISHED)) else None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read an ASAM MDF file.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Its `table` is the name of one group of channels (of its acquisition, or ``"group 2"``); without it
         all groups are read, each with its own time.
 
@@ -71,8 +71,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     """
     refuse_settings(path, settings, "an MDF log")
     with opened(path) as file:
-        wanted = settings.table if settings is not None else None
-        channels, remarks = _channels_of(path, file, wanted)
+        channels, remarks = _channels_of(path, file, settings.table)
         start = _start(path, file, settings)
     return RawLog(
         path=path,
@@ -139,9 +138,9 @@ def _check(path: Path, data: bytes) -> None:
         raise FileFormatError(message, "export the log as MDF 4", path=path)
 
 
-def _start(path: Path, file: Any, settings: Log | None) -> dt.datetime | None:
+def _start(path: Path, file: Any, settings: Log) -> dt.datetime | None:
     """Return when the time is 0: in UTC or with the file's own zone, or without one as version 3 has it."""
-    zone = time_zone_of(settings.time_zone if settings is not None else None, path)
+    zone = time_zone_of(settings.time_zone, path)
     found: dt.datetime = file.start_time
     if found.year <= 1970:
         return None

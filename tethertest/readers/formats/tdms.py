@@ -23,7 +23,7 @@ from tethertest.readers.text.stamps import time_zone_of
 from tethertest.readers.text.textlog import Progress
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import RawChannel, RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "tdms"
 #: bytes of a compressed file that are unpacked in memory; a larger one goes to the disk
@@ -35,14 +35,14 @@ def sniff(head: Head) -> str | None:
     return "the first bytes are 'TDSm'" if head.data.startswith(b"TDSm") else None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read an NI TDMS file.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Settings of the run file: units, and time_zone, in which the start is then shown.
 
     Returns
@@ -78,7 +78,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         return _log(path, plan, channels, settings)
 
 
-def stream(path: Path, settings: Log | None, rows: int, progress: Progress | None = None) -> Iterator[RawLog]:
+def stream(path: Path, settings: Log, rows: int, progress: Progress | None = None) -> Iterator[RawLog]:
     """Yield the log in pieces in which no channel has more samples than `rows`.
 
     Channels of other rates end sooner in a piece or go on in the next: what is together in the file stays
@@ -155,8 +155,8 @@ def _chunks(path: Path, file: Any, plan: Plan) -> Iterator[tuple[Key, FloatArray
         yield from parts
 
 
-def _log(path: Path, plan: Plan, channels: Iterable[RawChannel], settings: Log | None) -> RawLog:
-    zone = time_zone_of(settings.time_zone if settings is not None else None, path)
+def _log(path: Path, plan: Plan, channels: Iterable[RawChannel], settings: Log) -> RawLog:
+    zone = time_zone_of(settings.time_zone, path)
     return RawLog(
         path=path,
         format=NAME,

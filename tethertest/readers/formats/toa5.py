@@ -24,7 +24,7 @@ from tethertest.readers.text.stamps import parse_stamps, time_zone_of
 from tethertest.readers.text.table import check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import RawLog
-from tethertest.records.run import Log
+from tethertest.records.run import DEFAULT, Log
 
 NAME = "toa5"
 _MARK: Final = "TOA5"
@@ -57,14 +57,14 @@ def sniff(head: Head) -> str | None:
     return None
 
 
-def read(path: Path, settings: Log | None = None) -> RawLog:
+def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     """Read a Campbell TOA5 table.
 
     Parameters
     ----------
     path : Path
         The log, plain or in gzip or zip.
-    settings : Log, optional
+    settings : Log
         Settings of the run file: encoding, decimal, date_order, time_zone, units.
 
     Returns
@@ -78,10 +78,10 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
         The header is cut, its rows differ in length or repeat a name, a row is ragged or cut, or a date can
         be read two ways.
     """
-    document = read_document(path, settings.encoding if settings is not None else None)
+    document = read_document(path, settings.encoding)
     header = _read_header(document)
     width = len(header.names)
-    decimal = settings.decimal if settings is not None and settings.decimal is not None else "."
+    decimal = settings.decimal if settings.decimal is not None else "."
     rows = find_rows(path, document.from_line(5), 5, ",", decimal, quotes=True)
     check_widths(rows, width, width)
     record = next((column for column, name in enumerate(header.names) if name.upper() == _RECORD), None)
@@ -89,7 +89,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     columns = read_columns(rows, width, header.names, texts=texts)
     for column in texts - {0}:
         _refuse_numbers(path, header.names[column], columns.texts[column], rows.lines)
-    order = settings.date_order if settings is not None else None
+    order = settings.date_order
     stamps = parse_stamps(columns.texts[0], path, rows.lines, order)
     time = stamps.seconds()
     channels = [
@@ -111,7 +111,7 @@ def read(path: Path, settings: Log | None = None) -> RawLog:
     return RawLog(
         path=path,
         format=NAME,
-        start=stamps.start(time_zone_of(settings.time_zone if settings is not None else None, path)),
+        start=stamps.start(time_zone_of(settings.time_zone, path)),
         channels=with_units(path, channels, settings),
         encoding=document.encoding,
         decimal=decimal,

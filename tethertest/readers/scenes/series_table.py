@@ -17,6 +17,7 @@ from tethertest.readers.text.layout import find_layout
 from tethertest.readers.text.stamps import parse_stamps
 from tethertest.readers.text.table import Rows, check_widths, find_rows, read_columns
 from tethertest.records.arrays import FloatArray
+from tethertest.records.run import DEFAULT
 
 #: what an instrument's own time axis is called, for logs that have no column of it
 OWN_TIME = "time"
@@ -99,7 +100,7 @@ def read_series_table(path: Path) -> SeriesTable:
 
 def _text_table(path: Path) -> SeriesTable:
     document = read_document(path)
-    layout = find_layout(document, None)
+    layout = find_layout(document, DEFAULT)
     names, _ = unique_names(layout.names)
     body = document.from_line(layout.first_line)
     rows = find_rows(path, body, layout.first_line, layout.separator, layout.decimal, quotes=True)

@@ -81,7 +81,7 @@ class TextSource(Protocol):
         ...
 
 
-def find_layout(source: TextSource, settings: Log | None) -> Layout:
+def find_layout(source: TextSource, settings: Log) -> Layout:
     """Find the layout by content; settings of the run file come first.
 
     Raises
@@ -90,7 +90,7 @@ def find_layout(source: TextSource, settings: Log | None) -> Layout:
         There are no columns, the header does not fit the rows, or a decimal sign can be read two ways.
     """
     path = source.path
-    skip = settings.skip_rows if settings is not None else 0
+    skip = settings.skip_rows
     directive = _DIRECTIVE.fullmatch(source.lines(1)[0])
     if directive:
         skip = max(skip, 1)
@@ -103,14 +103,14 @@ def find_layout(source: TextSource, settings: Log | None) -> Layout:
             comments.append((number, text.lstrip().lstrip("#%/").strip()))
         else:
             plain.append((number, text))
-    wanted = settings.separator if settings is not None else None
+    wanted = settings.separator
     separator, lines, width = _find_separator(path, plain, wanted or (directive and directive[1]))
     first = _first_data_row(path, lines, width)
     data = [line for line in lines[first:] if abs(len(line.cells) - width) <= 1]
     decimal = _find_decimal(source, data, separator, settings)
     header_line, names, units = _find_names(path, lines[:first], comments, separator, width, lines[first])
     numbered = header_line is None
-    if settings is not None and settings.columns:
+    if settings.columns:
         names, units = _names_of_settings(path, settings.columns, lines[first], header_line, names)
         header_line, numbered = None, False
     if names and not names[-1] and len(names) > 1:
@@ -187,8 +187,8 @@ def _is_filled_datum(cell: str) -> bool:
     return bool(cell) and is_datum(cell)
 
 
-def _find_decimal(source: TextSource, data: list[Line], separator: str, settings: Log | None) -> str:
-    if settings is not None and settings.decimal is not None:
+def _find_decimal(source: TextSource, data: list[Line], separator: str, settings: Log) -> str:
+    if settings.decimal is not None:
         return settings.decimal
     commas = points = decided = False
     grouped: tuple[int, str] | None = None

@@ -90,7 +90,7 @@ class TableLog:
                 raise FileFormatError(message, remedy, path=self.text.path, line=item.line)
 
 
-def open_table(path: Path, settings: Log | None) -> TableLog:
+def open_table(path: Path, settings: Log) -> TableLog:
     """Look at the beginning of a text log, and further only where that leaves something open.
 
     Raises
@@ -98,12 +98,12 @@ def open_table(path: Path, settings: Log | None) -> TableLog:
     FileFormatError
         The log is empty, has no columns or no time, or can be read in two ways.
     """
-    text = open_text(path, settings.encoding if settings is not None else None)
+    text = open_text(path, settings.encoding)
     layout = find_layout(text, settings)
     raw_names = layout.names
     names, renamed = unique_names(raw_names)
     layout = replace(layout, names=names)
-    zone = time_zone_of(settings.time_zone if settings is not None else None, path)
+    zone = time_zone_of(settings.time_zone, path)
     chosen = find_time(layout, path, settings)
     _refuse_two_tables(path, layout, raw_names, {*chosen.stamps, chosen.counter})
     counter = None
@@ -123,7 +123,7 @@ def open_table(path: Path, settings: Log | None) -> TableLog:
         spare=len(layout.first_cells) > layout.width,
     )  # fmt: skip
     numbers = tuple(sorted({*channels, *time_only.numbers}))
-    order = settings.date_order if settings is not None else None
+    order = settings.date_order
     beginning = _parsed(text, layout, time_only, None)
     with closing(beginning):
         first, lines = _first_rows(path, beginning)

@@ -60,7 +60,7 @@ def columns_named_time(layout: Layout) -> list[int]:
     return [column for column, (name, unit) in named if is_time_name(name, unit)]
 
 
-def find_time(layout: Layout, path: Path, settings: Log | None) -> TimeColumns:
+def find_time(layout: Layout, path: Path, settings: Log) -> TimeColumns:
     """Choose the time as run.toml says, else by name, stamps, unit, then place.
 
     Raises
@@ -69,7 +69,7 @@ def find_time(layout: Layout, path: Path, settings: Log | None) -> TimeColumns:
         No column can be the time, or not the one that run.toml names.
     """
     named = columns_named_time(layout)
-    if settings is not None and settings.rate is not None:
+    if settings.rate is not None:
         remarks = [f"the time is counted from rate = {settings.rate:g} Hz in run.toml"]
         remarks += [f"column {layout.names[column]!r} is not used as the time" for column in named]
         return TimeColumns(rate=settings.rate, remarks=tuple(remarks))
@@ -77,7 +77,7 @@ def find_time(layout: Layout, path: Path, settings: Log | None) -> TimeColumns:
         kind: [column for column, found in enumerate(layout.kinds) if found == kind]
         for kind in ("number", "datetime", "date", "time", "text")
     }
-    if settings is not None and settings.time is not None:
+    if settings.time is not None:
         return _wanted(layout, path, settings.time, of_kind["time"])
     chosen = _evident(layout, path, [column for column in named if layout.kinds[column] == "number"], of_kind)
     if chosen is not None:
@@ -218,9 +218,7 @@ def _no_time(layout: Layout, path: Path) -> FileFormatError:
     return FileFormatError(message, remedy, path=path, line=layout.header_line)
 
 
-def read_counter(
-    layout: Layout, column: int, path: Path, settings: Log | None, zone: dt.tzinfo | None
-) -> Counter:
+def read_counter(layout: Layout, column: int, path: Path, settings: Log, zone: dt.tzinfo | None) -> Counter:
     """Return what the time column counts, by its unit and by the size of its first number.
 
     Raises
@@ -229,7 +227,7 @@ def read_counter(
         Its unit is none of time.
     """
     name, unit = layout.names[column], layout.units[column]
-    written = settings.units.get(name) if settings is not None else None
+    written = settings.units.get(name)
     unit = written or unit or unit_in_name(name)
     try:
         first = float(layout.first_cells[column].replace(",", "."))
@@ -256,7 +254,7 @@ def read_counter(
         message = f"the time column {name!r} has the unit {unit!r}, expected s, ms, us, min or h"
         remedy = f'set units = {{ "{name}" = "s" }} for this log in run.toml if it counts seconds'
         raise FileFormatError(message, remedy, path=path, line=layout.header_line)
-    order = settings.date_order if settings is not None else None
+    order = settings.date_order
     start_time, date_order = _start_from_comments(path, layout, order, zone)
     factor = SECONDS.get(unit.strip().lower(), 1.0)
     return Counter(factor, None, (0.0, 1.0), start_time, date_order, remarks)

@@ -6,7 +6,20 @@ a traceback and leaves with exit code 2.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Final, Self
+
+#: the option that stands for the log's entry in run.toml where a log belongs to no run
+SET: Final = "--set"
+
+
+def where_set(keys: Sequence[str], *, by_option: bool) -> str:
+    """Return where a person sets keys of a log: in its run, or on the command line for a log without one."""
+    if not by_option:
+        return "in this log's entry in run.toml"
+    words = ["units.NAME=UNIT" if key == "units" else f"{key}=VALUE" for key in keys]
+    return f"{' or '.join(f'{SET} {word}' for word in words)}, or in the log's entry in run.toml"
 
 
 class TethertestError(Exception):
@@ -22,15 +35,28 @@ class TethertestError(Exception):
         The file concerned.
     line : int, optional
         Line of the file, counted from 1.
+    keys : sequence of str
+        Keys of the log's entry in run.toml that mend it; the remedy then ends with where they are set.
+    by_option : bool
+        The log belongs to no run: the keys are set on the command line.
     """
 
     def __init__(
-        self, problem: str, remedy: str = "", *, path: Path | str | None = None, line: int | None = None
+        self,
+        problem: str,
+        remedy: str = "",
+        *,
+        path: Path | str | None = None,
+        line: int | None = None,
+        keys: Sequence[str] = (),
+        by_option: bool = False,
     ) -> None:
         self.problem = problem
-        self.remedy = remedy
+        self.advice = remedy  #: the remedy without where keys are set
+        self.remedy = f"{remedy} ({where_set(keys, by_option=by_option)})" if keys else remedy
         self.path = None if path is None else str(path)
         self.line = line
+        self.keys = tuple(keys)
         super().__init__(str(self))
 
     def __str__(self) -> str:
@@ -40,11 +66,21 @@ class TethertestError(Exception):
         remedy = f"\n  fix: {self.remedy}" if self.remedy else ""
         return f"{where}{self.problem}{remedy}"
 
-    def located(self, path: Path | str, line: int | None = None) -> TethertestError:
+    def located(self, path: Path | str, line: int | None = None) -> Self:
         """Return the same error with a place, unless it already has one."""
         if self.path is not None:
             return self
-        return type(self)(self.problem, self.remedy, path=path, line=line)
+        return self.moved(path, line)
+
+    def moved(self, path: Path | str | None, line: int | None = None) -> Self:
+        """Return the same error at another place."""
+        return type(self)(self.problem, self.advice, path=path, line=line, keys=self.keys)
+
+    def without_run(self) -> Self:
+        """Return the same error of a log that belongs to no run: its keys are set on the command line."""
+        return type(self)(
+            self.problem, self.advice, path=self.path, line=self.line, keys=self.keys, by_option=True
+        )
 
 
 class QuantityError(TethertestError):

@@ -243,7 +243,7 @@ def test_columns_and_rate_of_the_settings(write, settings):
     assert [(channel.name, channel.unit) for channel in log.channels] == [("F_top", ""), ("T [degC]", "degC")]
     assert log.channels[0].time.tolist() == [0.0, 0.02, 0.04]
     assert (log.rate, log.header_line, log.start) == (50.0, None, None)
-    assert log.remarks == ("the time is counted from rate = 50 Hz in run.toml",)
+    assert log.remarks == ("the time is counted from the rate 50 Hz that is set",)
 
 
 def test_a_rate_is_taken_before_the_log_s_own_time_and_says_so(write, settings):
@@ -284,7 +284,7 @@ def test_stamps_that_the_settings_name(write, settings):
 @pytest.mark.parametrize(
     ("text", "keys", "match"),
     [
-        ("time,F\n0,1\n1,2\n", {"time": "clock"}, "time = 'clock', which the log does not have"),
+        ("time,F\n0,1\n1,2\n", {"time": "clock"}, 'time = "clock" is set, which the table does not have'),
         ("a,F\nx,1\ny,2\n", {"time": "a"}, "the time column 'a' holds text"),
         ("a,F\n,1\n,2\n", {"time": "a"}, "the time column 'a' holds nothing"),
         ("time,F\n0,1\n1,2\n", {"columns": ("t", "F")}, "columns, but the log names its own: 'time', 'F'"),
@@ -303,9 +303,10 @@ def test_settings_that_do_not_fit_are_refused(write, settings, text, keys, match
 
 def test_a_log_without_time_is_told_what_to_write(write):
     with pytest.raises(FileFormatError) as caught:
-        read_log(write("F,T\n5,1\n4,2\n"))
-    assert 'time = "F"' in caught.value.remedy
+        read_log(write("F,T\n5,1\n4,2.5\n"))
+    assert 'set time = "T"' in caught.value.remedy  # F does not go forward
     assert 'rate = "100 Hz"' in caught.value.remedy
+    assert caught.value.keys == ("time", "rate")
 
 
 def test_a_calibration_is_told_from_a_log(write):

@@ -137,7 +137,7 @@ def test_stamps_as_text_stay_text_and_so_do_texts_like_formulas(made):
     log = read_log(made(fill))
     np.testing.assert_allclose(log.channels[0].time, T, atol=1e-9)
     assert [channel.name for channel in log.channels] == ["F"]
-    assert "column 'note' holds text and is no channel" in log.remarks
+    assert "column 'note' holds text and is not a channel" in log.remarks
 
 
 @pytest.mark.parametrize(
@@ -145,7 +145,8 @@ def test_stamps_as_text_stay_text_and_so_do_texts_like_formulas(made):
     [
         ("General", ""), ("0.00E+00", ""), ("#,##0.00", ""), ("[Red]0.0;[Blue]-0.0", ""), ('0.0 "days"', ""),
         ("0.0\\ \\d", ""), ("dd/mm/yyyy", "excel"), ("m/d/yy h:mm", "excel"), ("[h]:mm:ss", "day"),
-        ("mm:ss.0", "day"), ("hh:mm:ss AM/PM", "day"), ("[$-409]d-mmm;@", "excel"), ("mmm", "excel"),
+        ("mm:ss.0", "time of day"), ("hh:mm:ss AM/PM", "time of day"),
+        ("[$-409]d-mmm;@", "excel"), ("mmm", "excel"),
     ],
 )  # fmt: skip
 def test_what_a_format_says_that_a_number_counts(form, unit):
@@ -245,11 +246,11 @@ ODD = {
     ),
     "tables side by side": (
         lambda sheet: (filled(sheet), filled(sheet, (("t2 [s]", "G"),), SECOND, (1, 4))),
-        "in units of time that all increase steadily: 'time', 't2'",
+        "more than one column may be the time: 'time', 't2'",
     ),
     "the time twice": (
         lambda sheet: filled(sheet, (("t", "F", "t", "G"),), [(k, 1.0, 2 * k, 2.0) for k in range(9)]),
-        "found two columns of time, both called 't'",
+        "the name 't' of the time in column 1 also stands over column 3",
     ),
     "true": (put(B5=True), r"cell B5: found True in 'F_top', expected a number"),
     "a date": (put(B5=dt.datetime(2026, 9, 5)), "cell B5: found a date in 'F_top', expected a number"),
@@ -259,7 +260,7 @@ ODD = {
         lambda sheet: filled(sheet, (("a", "b", "c"), ("time", "F", "G"))), "more than one row of names",
     ),
     "number above": (lambda sheet: filled(sheet, ((1, "F", "G"),)), "no row of names above it"),
-    "blank time": (put(A5=None), r"sheet 'log' row 5: the time 'time' is no number"),
+    "blank time": (put(A5=None), r"sheet 'log' row 5: the row has no time"),
     "merged": (merged("B5:B9"), "the cells B5:B9 are merged within the table"),
     "empty": (lambda sheet: None, "no visible sheet holds a table"),
 }  # fmt: skip

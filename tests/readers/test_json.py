@@ -15,7 +15,7 @@ def test_bare_rows_are_numbered_and_the_first_column_that_rises_is_the_time(writ
     assert (log.format, [channel.name for channel in log.channels]) == ("json", ["column 2", "column 3"])
     assert log.channels[0].time.tolist() == [k / 4 for k in range(8)]
     assert log.channels[1].values.tolist() == [-k for k in range(8)]
-    assert "increases in the steps that the file states (dt = 0.25)" in log.remarks[0]
+    assert "steps as the file says (dt = 0.25)" in log.remarks[0]
 
 
 def test_a_step_that_disagrees_is_no_evidence(write):
@@ -25,7 +25,7 @@ def test_a_step_that_disagrees_is_no_evidence(write):
 
 def test_line_numbers_are_no_time_until_the_rate_is_given(write, settings):
     path = write(json.dumps([[k, 5.0 + (k % 3)] for k in range(8)]))
-    with pytest.raises(FileFormatError, match=r"counts by ones.*\n.*rate = \"100 Hz\""):
+    with pytest.raises(FileFormatError, match=r"counts the rows, or whole seconds.*\n.*rate = \"100 Hz\""):
         read_log(path)
     log = read_log(path, settings(columns=("number", "F"), rate=100.0, units={"F": "N"}))
     assert [(channel.name, channel.unit) for channel in log.channels] == [("number", ""), ("F", "N")]
@@ -61,7 +61,7 @@ def test_two_tables_are_listed_and_run_toml_names_one(write, settings):
     [
         (
             {"time": "tt"},
-            r"time = \"tt\", which the table does not have\n.*'column 1', 'column 2', 'column 3'",
+            r"time = \"tt\" is set, which the table does not have\n.*'column 1', 'column 2', 'column 3'",
         ),
         ({"columns": ("t", "F")}, "names 2 columns, 'data' has 3"),
         ({"decimal": ","}, "gives decimal, which a JSON log does not need"),

@@ -59,9 +59,27 @@ def test_a_time_that_only_its_unit_shows_is_remarked(write):
 
 
 @pytest.mark.parametrize("text", PARTS.values(), ids=PARTS)
-def test_fractions_of_a_second_in_a_column_of_their_own_are_refused(write, text):
-    with pytest.raises(FileFormatError, match="looks like the fraction of a second"):
+def test_fractions_of_a_second_that_the_values_bear_out_are_put_to_the_seconds(write, text):
+    log = read_log(write(text))
+    np.testing.assert_allclose(log.channels[-1].time, np.arange(60) / 10, atol=1e-12)
+    assert any("is the fraction of a second" in remark for remark in log.remarks)
+
+
+@pytest.mark.parametrize("size", [64, 1 << 20])
+def test_a_fraction_of_more_than_a_second_is_refused_in_its_line(write, monkeypatch, size):
+    monkeypatch.setattr(textlog, "BLOCK_BYTES", size)
+    text = rows("sec,nsec,F [N]", lambda k: f"{k // 10},{k % 10 * 10**8 + (k == 250) * 10**9},{k % 7}", 300)
+    with pytest.raises(FileFormatError, match="the fraction of a second is 1 s") as caught:
         read_log(write(text))
+    assert caught.value.line == 252
+
+
+@pytest.mark.parametrize("fraction", [lambda k: k * 37 % 1000, lambda k: 250, lambda k: 100 * k])
+def test_a_column_that_does_not_complete_the_seconds_is_refused(write, fraction):
+    text = rows("Time,ms,F [N]", lambda k: f"{k},{fraction(k)},{k % 7}")
+    with pytest.raises(FileFormatError, match="looks like the fraction of a second") as caught:
+        read_log(write(text))
+    assert caught.value.keys == ("rate", "time")
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 import re
+from dataclasses import dataclass
 from typing import Final
 
 _NAMES: Final = frozenset([
@@ -12,8 +13,21 @@ _NAMES: Final = frozenset([
     "temps", "tiempo", "tempo", "时间", "采样时间", "时刻",
 ])  # fmt: skip
 _NAME_WITH_UNIT = re.compile(
-    r"(?:time|t|elapsed|timestamp|epoch)[_ /](s|sec|ms|msec|us|min|h)", re.IGNORECASE
+    r"(?:time|t|elapsed|timestamp|epoch|(?:.*[_. ])?(?:stamp|tv))[_ /.](s|secs?|seconds|ms|msec|us|min|h)",
+    re.IGNORECASE,
 )
+#: names that are a unit of time written out
+_UNIT_AS_NAME: Final = {
+    "millis": "ms", "milliseconds": "ms", "micros": "us", "microseconds": "us",
+    "nanos": "ns", "nanoseconds": "ns",
+}  # fmt: skip
+#: a column of fractions of a second beside stamps or seconds: ``ms``, ``header.stamp.nsecs``, ``fraction``
+_SUBSECOND = re.compile(
+    r"(ms|us|µs|ns|毫秒|(?:.*(?:time|stamp|date|tv)[_. ])?(?:m|u|n|milli|micro|nano)(?:s|secs?|seconds?)"
+    r"|(?:sec(?:ond)?s?[_. ]?)?frac(?:tion)?(?:al)?(?:[_. ]?s(?:ec(?:ond)?s?)?)?|sub[_. ]?sec(?:ond)?s?)",
+    re.IGNORECASE,
+)
+_PARTS: Final = {"m": "ms", "毫": "ms", "u": "us", "µ": "us", "n": "ns"}
 #: unit of a counter of time, in lower case -> seconds
 SECONDS: Final = {
     "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "秒": 1.0, "ms": 1e-3, "msec": 1e-3, "毫秒": 1e-3,
@@ -23,11 +37,26 @@ SECONDS: Final = {
 #: unit of a counter of days, only ever as the run file or an attribute says it -> days from its zero to 1970
 #: (MATLAB counts from the year 0; Excel from 1900, with a 29 February 1900 that was none, or from 1904)
 CALENDARS: Final = {"datenum": 719_529, "excel": 25_569, "excel-1904": 24_107}
+#: times of day as spreadsheets hold them: parts of a day
+CLOCK_UNIT: Final = "time of day"
 SECONDS_PER_DAY: Final = 86_400.0
 #: seconds since 1970 of the years 1979 to 2065; other counters are told by their size in this unit
 _EPOCH: Final = (3e8, 3e9)
 #: a LabVIEW counter of seconds starts in 1904, this many seconds before 1970
 _LABVIEW_EPOCH: Final = 2_082_844_800
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What a file says beside its table."""
+
+    step: float | None = None  #: [s] between samples
+    source: str = ""  #: what says the step, as the file writes it
+    time_unit: str = ""
+
+
+#: of a file that says nothing beside its table
+NO_FACTS: Final = Facts()
 
 
 def is_time_name(name: str, unit: str) -> bool:
@@ -37,9 +66,21 @@ def is_time_name(name: str, unit: str) -> bool:
 
 
 def unit_in_name(name: str) -> str:
-    """Return the unit at the end of a name such as ``time_ms``, or ""."""
-    match = _NAME_WITH_UNIT.fullmatch(name)
-    return match[1] if match else ""
+    """Return the unit in a name such as ``time_ms`` or ``millis``, in lower case, or ""."""
+    plain = name.strip().lower()
+    if match := _NAME_WITH_UNIT.fullmatch(plain):
+        return match[1].replace("secs", "s")
+    return plain if plain in SECONDS else _UNIT_AS_NAME.get(plain, "")
+
+
+def subsecond_unit(name: str, unit: str) -> str:
+    """Return the unit of a column that is called like a fraction of a second: s, ms, us or ns; or ""."""
+    plain = name.strip().lower()
+    if _SUBSECOND.fullmatch(plain) is None or (unit and unit.strip().lower() not in SECONDS):
+        return ""
+    last = re.split(r"[_. ]", plain)[-1]
+    of_name = "" if "frac" in plain or "sub" in plain else _PARTS[last[0]]
+    return unit.strip().lower() or of_name or "s"
 
 
 def is_time_unit(unit: str) -> bool:

@@ -9,14 +9,16 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.time import CLOCK_UNIT
-from tethertest.readers.containers.workbook import Merged, checked_sheet, column_name, merged_cells
 from tethertest.readers.guards.limits import SHEET_CELLS
+from tethertest.readers.containers.workbook import Merged, checked_sheet, column_name, merged_cells
+from tethertest.readers.timeunits import CLOCK_UNIT
 
 #: what is no part of the number in a format: quoted, escaped, padding, and brackets other than [h], [m], [s]
 _LITERAL: Final = re.compile(r'"[^"]*"|\\.|_.|\*.|\[(?!h+\]|m+\]|s+\])[^\]]*\]')
 
 
+#: hours, minutes or seconds that go on beyond the day, the hour or the minute
+_DURATION: Final = re.compile(r"\[(?:h+|m+|s+)\]")
 #: commas behind the last digit of a format show thousands, millions, ...
 _THOUSANDS: Final = re.compile(r"[0#?](,+)(?!.*[0#?])")
 
@@ -126,5 +128,5 @@ def date_unit(form: str, calendar: str) -> str:
     if letters & set("yd"):
         return calendar
     if letters & set("hs"):
-        return CLOCK_UNIT
+        return "day" if _DURATION.search(form.lower()) else CLOCK_UNIT
     return calendar if "m" in letters and not letters & set("0#?") else ""

@@ -14,7 +14,7 @@ from tethertest.readers.containers.workbook import column_name
 from tethertest.readers.text.cells import bare_unit, is_units_row, split_unit
 from tethertest.readers.text.stamps import stamp_kind
 from tethertest.readers.text.table import MISSING_TOKENS, is_number
-from tethertest.readers.timeunits import CALENDARS, SECONDS, is_time_name
+from tethertest.readers.timeunits import CALENDARS, CLOCK_UNIT, SECONDS, is_time_name
 
 #: rows at the end by which a column is known to hold numbers or stamps
 _SAMPLE = 100
@@ -86,23 +86,6 @@ def _refuse_second_table(sheet: Sheet, first: int, columns: list[int], found: li
         names = listed(next(column.name for column in block if _is_time(column)) for block in timed)
         problem = f"found tables beside each other, each with a time: {names}"
         raise sheet.error(problem, _APART, first)
-    names_of_times = [column.name for column in found if _is_time(column)]
-    twice = next((name for name in names_of_times if names_of_times.count(name) > 1), None)
-    if twice is not None:
-        problem = f"found two columns of time, both called {twice!r}"
-        raise sheet.error(problem, _APART, first)
-    rising = [column.name for column in found if column.unit.lower() in SECONDS and _is_rising(column)]
-    if len(rising) > 1:
-        problem = f"found columns in units of time that all increase steadily: {listed(rising)}"
-        raise sheet.error(problem, _APART, first)
-
-
-def _is_rising(column: Column) -> bool:
-    values = np.asarray(column.cells)
-    if values.dtype.kind != "f":
-        return False
-    filled = values[np.isfinite(values)]
-    return filled.size > 2 and bool(np.all(np.diff(filled) > 0))
 
 
 def _is_time(column: Column) -> bool:
@@ -216,7 +199,10 @@ def _column(sheet: Sheet, rows: range, column: int, name: str, unit: str) -> Col
         shown = f"column {name!r} is read as it is shown, {scale:g} times what is stored"
         remark = f"{remark}; {shown}" if remark else shown
     shown_as = kinds - {_BOOLEAN, ""}
-    return Column(name, shown_as.pop() if shown_as else unit, values, remark)
+    counts = shown_as.pop() if shown_as else unit
+    if counts == CLOCK_UNIT and np.nanmax(values) >= 1.0:
+        counts = "day"  # a duration
+    return Column(name, counts, values, remark)
 
 
 def _shown_scale(sheet: Sheet, rows: range, column: int, name: str, cells: Sequence[Cell]) -> float:

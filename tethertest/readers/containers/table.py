@@ -13,6 +13,7 @@ import numpy.typing as npt
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import unique_names
 from tethertest.readers.guards.limits import COLUMNS
+from tethertest.readers.timeunits import NO_FACTS, Facts
 from tethertest.records.run import Log
 
 Numbers: TypeAlias = npt.NDArray[Any]
@@ -31,15 +32,6 @@ class Column:
     remark: str = ""  #: what was read as missing
 
 
-@dataclass(frozen=True, slots=True)
-class Facts:
-    """What a file says beside its table."""
-
-    step: float | None = None  #: [s] between samples
-    source: str = ""  #: what says the step, as the file writes it
-    time_unit: str = ""
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
     """Columns of one length, and what the file says of them."""
@@ -47,7 +39,7 @@ class Table:
     path: Path
     columns: tuple[Column, ...]
     named: bool  #: the names are the file's own
-    facts: Facts = Facts()
+    facts: Facts = NO_FACTS
     rows: tuple[int, ...] | None = None  #: place of every row as the file counts them; None for 1, 2, ...
     place: str = "row"  #: what such a number counts, as in ``sheet 'log' row``
     remarks: tuple[str, ...] = field(default=())
@@ -66,12 +58,12 @@ class Table:
         """Return the column of that name."""
         return next((column for column in self.columns if column.name == name), None)
 
-    def error(self, problem: str, remedy: str, row: int | None = None) -> FileFormatError:
-        """Return an error of this table, at a row counted from 0."""
+    def error(self, problem: str, remedy: str, *keys: str, row: int | None = None) -> FileFormatError:
+        """Return an error of this table, at a row counted from 0, with the keys of run.toml that mend it."""
         if row is not None:
             number = row + 1 if self.rows is None else self.rows[row]
             problem = f"{self.place} {number}: {problem}"
-        return FileFormatError(problem, remedy, path=self.path)
+        return FileFormatError(problem, remedy, path=self.path, keys=keys)
 
 
 def toml_text(text: str) -> str:

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from tethertest.readers.containers.table import Column, Facts, Numbers
+from tethertest.readers.containers.table import Column, Numbers
+from tethertest.readers.timeunits import Facts
 
 #: what a file calls a number that says how far its samples are apart, without blanks and signs, in lower case
 _RATES: Final = frozenset([

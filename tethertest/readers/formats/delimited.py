@@ -110,6 +110,6 @@ def _log(
         separator=layout.separator,
         date_order=scale.date_order,
         header_line=layout.header_line,
-        rate=scale.chosen.rate,
+        rate=scale.choice.rate,
         remarks=remarks,
     )

@@ -29,6 +29,8 @@ SPELLINGS: Final = {
 }  # fmt: skip
 _COMMENT: Final = ("#", "%", "//")
 _SAMPLE_LINES: Final = 600
+#: rows by which the kind of a column and the time are told
+SHOWN_ROWS: Final = 200
 #: characters of rows that say nothing: spreadsheets write them by the thousand behind the data
 _EMPTY: Final = " \t\r\n;,|"
 #: a line that spreadsheets write and read
@@ -61,7 +63,7 @@ class Layout:
     comments: tuple[str, ...]  #: comment lines above the data, without their sign
     numbered: bool  #: the file has no names and run.toml gives none
     first_cells: tuple[str, ...]  #: of the first data row
-    first_column: tuple[str, ...]  #: cells at the beginning of the first column
+    heads: tuple[tuple[str, ...], ...]  #: the first cells of every column
 
 
 class TextSource(Protocol):
@@ -115,16 +117,17 @@ def find_layout(source: TextSource, settings: Log) -> Layout:
         header_line, numbered = None, False
     if names and not names[-1] and len(names) > 1:
         names, units = names[:-1], units[:-1]
-    kinds = tuple(
-        column_kind([line.cells[column] for line in data[:200] if column < len(line.cells)])
+    heads = tuple(
+        tuple(line.cells[column] if column < len(line.cells) else "" for line in data[:SHOWN_ROWS])
         for column in range(len(names))
     )
     texts = tuple(text for number, text in comments if number < lines[first].number)
     return Layout(
-        separator, decimal, header_line, lines[first].number, len(names), names, units, kinds, texts,
+        separator, decimal, header_line, lines[first].number, len(names), names, units,
+        tuple(map(column_kind, heads)), texts,
         numbered=numbered,
         first_cells=tuple(lines[first].cells),
-        first_column=tuple(line.cells[0] for line in data[:200]),
+        heads=heads,
     )  # fmt: skip
 
 

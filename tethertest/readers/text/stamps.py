@@ -112,7 +112,7 @@ def parse_stamps(
         A cell is no stamp, is no possible date, or day and month can be read both ways.
     """
     rows = np.asarray(lines)
-    parts = split_stamps(_characters("\n".join(cells)), path, rows)
+    parts = split_stamps(characters_of(cells), path, rows)
     order = ""
     if parts.dated:
         order = settle_order([parts], date_order, path, int(rows[0]))
@@ -268,6 +268,11 @@ def settle_order(blocks: Iterable[StampParts], wanted: str | None, path: Path, l
 def _year_may_lead(first: Integers, third: Integers) -> bool:
     """Return whether dates such as 26.09.05 are rather of 2026 than of 2005."""
     return bool(np.any((first > _LONG_AGO) & (third <= _LONG_AGO)))
+
+
+def characters_of(cells: Sequence[str]) -> Characters:
+    """Return (n, m) characters of stamps, zero behind the end of each."""
+    return _characters("\n".join(cell.replace("\n", " ") for cell in cells))
 
 
 def _characters(together: str) -> Characters:

@@ -18,16 +18,24 @@ from tethertest.readers.channels import unique_names
 from tethertest.readers.text.blocks import Integers, Parsed, RowPlan, parse_block
 from tethertest.readers.text.layout import Layout, find_layout
 from tethertest.readers.text.rows import Comment, RowBlock
-from tethertest.readers.text.stamps import stamp_kind, time_zone_of
+from tethertest.readers.text.stamps import stamp_kind
 from tethertest.readers.text.table import SPACES
 from tethertest.readers.text.textlog import Progress, TextBlock, TextLog, open_text
-from tethertest.readers.text.timeaxis import STATED_START, columns_named_time, find_time, read_counter
-from tethertest.readers.text.timescale import Midnights, TimeScale, settle_scale
+from tethertest.readers.timescale import (
+    STATED_START,
+    Midnights,
+    Numbers,
+    TimeCells,
+    TimeScale,
+    counting_of,
+    settle_scale,
+)
+from tethertest.readers.timesearch import ColumnHead, TableHead, find_time, kind_of, no_channels
+from tethertest.readers.timeunits import CALENDARS
 from tethertest.records.run import Log
 
 #: threads that parse; more wait for the one that reads
 _MOST_WORKERS: Final = 4
-_TEXTS: Final = frozenset(["text", "date", "time", "datetime"])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,7 +65,7 @@ class TableLog:
         for parsed, lines, encoding in _parsed(self.text, self.layout, self.plan, progress):
             open_comments += parsed.comments
             if len(lines):
-                time = self.scale.seconds(parsed, lines, row)
+                time = self.scale.seconds(_time_cells(self.plan, self.scale, parsed, lines), row)
                 if self.scale.dateless:
                     time = midnights.passed(time)
                 row += len(lines)
@@ -100,41 +108,50 @@ def open_table(path: Path, settings: Log) -> TableLog:
     """
     text = open_text(path, settings.encoding)
     layout = find_layout(text, settings)
-    raw_names = layout.names
-    names, renamed = unique_names(raw_names)
+    names, renamed = unique_names(layout.names)
+    head = _head(path, layout, names)
     layout = replace(layout, names=names)
-    zone = time_zone_of(settings.time_zone, path)
-    chosen = find_time(layout, path, settings)
-    _refuse_two_tables(path, layout, raw_names, {*chosen.stamps, chosen.counter})
-    counter = None
-    if chosen.counter is not None:
-        counter = read_counter(layout, chosen.counter, path, settings, zone)
-    channels, unused = _channels(layout, {*chosen.stamps, chosen.counter})
+    choice = find_time(head, settings)
+    counting = counting_of(head, choice, settings)
+    held = no_channels(head)
+    unused = tuple(
+        f"column {names[place]!r} holds {what} and is not a channel"
+        for place, what in held.items()
+        if place not in choice.used
+    )
+    channels = tuple(place for place in range(layout.width) if place not in held and place not in choice.used)
     if not channels:
         message = "the log has a time but no channels"
         remedy = "choose the file that holds the data"
         raise FileFormatError(message, remedy, path=path, line=layout.header_line)
+    counter = choice.columns[0] if counting is not None else None
+    parts = [place for place in (counter, choice.fraction) if place is not None]
+    is_exact = counting is not None and counting.decimals is not None
     time_only = RowPlan(
         path, layout.separator, layout.decimal, names,
-        numbers=() if chosen.counter is None else (chosen.counter,),
-        stamps=chosen.stamps,
-        counter=chosen.counter if counter is not None and counter.decimals is not None else None,
-        decimals=counter.decimals or 0 if counter is not None else 0,
+        numbers=tuple(parts),
+        stamps=choice.columns if counting is None else (),
+        counter=counter if is_exact else None,
+        decimals=(counting.decimals or 0) if counting is not None else 0,
         spare=len(layout.first_cells) > layout.width,
     )  # fmt: skip
-    numbers = tuple(sorted({*channels, *time_only.numbers}))
-    order = settings.date_order
     beginning = _parsed(text, layout, time_only, None)
     with closing(beginning):
         first, lines = _first_rows(path, beginning)
-        later = ((parsed, its_lines) for parsed, its_lines, _ in beginning if len(its_lines))
-        settled = settle_scale(path, chosen, counter, 0, (first, lines), later, order, zone)
+        waiting = TimeScale(path, choice, counting)
+        later = (
+            _time_cells(time_only, waiting, parsed, its_lines)
+            for parsed, its_lines, _ in beginning
+            if len(its_lines)
+        )
+        cells = _time_cells(time_only, waiting, first, lines)
+        settled = settle_scale(head, choice, counting, settings, cells, later)
     no_header = ("the log has no header; its columns are numbered",) if layout.numbered else ()
     return TableLog(
         text=text,
         layout=layout,
-        plan=replace(time_only, numbers=numbers),
-        scale=replace(settled, place=0 if chosen.counter is None else numbers.index(chosen.counter)),
+        plan=replace(time_only, numbers=tuple(sorted({*channels, *parts}))),
+        scale=settled,
         channels=channels,
         expected_rows=_expected_rows(path, layout),
         remarks_before=(*no_header, *renamed, *settled.remarks),
@@ -142,34 +159,33 @@ def open_table(path: Path, settings: Log) -> TableLog:
     )
 
 
-def _refuse_two_tables(path: Path, layout: Layout, names: tuple[str, ...], time: set[int | None]) -> None:
-    """Refuse a second column of the time's name: what stands behind it has a time of its own."""
-    for column in sorted(column for column in time if column is not None):
-        again = [other + 1 for other, name in enumerate(names) if name == names[column] and other != column]
-        if again:
-            message = (
-                f"the name {names[column]!r} of the time in column {column + 1} also stands over column "
-            )
-            message += f"{', '.join(map(str, again))}: two tables side by side"
-            remedy = "export each table by itself, or name the columns by columns and skip_rows in run.toml"
-            raise FileFormatError(message, remedy, path=path, line=layout.header_line)
+def _head(path: Path, layout: Layout, names: tuple[str, ...]) -> TableHead:
+    """Return what the search for the time is shown."""
+    columns = []
+    for place, (name, unit, kind, cells) in enumerate(
+        zip(names, layout.units, layout.kinds, layout.heads, strict=True)
+    ):
+        column = ColumnHead(name, unit, cells, kind, layout.names[place])
+        if kind == "number" and unit.strip().lower() in CALENDARS:
+            numbers = column.numbers()
+            column = replace(column, cells=numbers, kind=kind_of(numbers, unit))
+        columns.append(column)
+    return TableHead(
+        path, tuple(columns), named=not layout.numbered, header_line=layout.header_line,
+        first_line=layout.first_line, comments=layout.comments,
+    )  # fmt: skip
 
 
-def _channels(layout: Layout, used: set[int | None]) -> tuple[tuple[int, ...], tuple[str, ...]]:
-    """Return the columns that are channels, and a remark on each that is none and not the time."""
-    blank = {column for column in columns_named_time(layout) if layout.kinds[column] == "blank"}
-    channels, remarks = [], []
-    for column, kind in enumerate(layout.kinds):
-        if column in used:
-            continue
-        if kind in _TEXTS:
-            holds = "text" if kind == "text" else "stamps"
-            remarks.append(f"column {layout.names[column]!r} holds {holds} and is not a channel")
-        elif column in blank:
-            remarks.append(f"column {layout.names[column]!r} begins blank and is not a channel")
-        else:
-            channels.append(column)
-    return tuple(channels), tuple(remarks)
+def _time_cells(plan: RowPlan, scale: TimeScale, parsed: Parsed, lines: Integers) -> TimeCells:
+    """Return the time of the rows of a block as it is written."""
+    choice = scale.choice
+    numbers: Numbers = np.empty(0)
+    if scale.counting is not None:
+        numbers = parsed.numbers[plan.numbers.index(choice.columns[0])]
+    fraction = None
+    if choice.fraction is not None:
+        fraction = parsed.numbers[plan.numbers.index(choice.fraction)]
+    return TimeCells(lines, numbers, parsed.ticks, 10.0**plan.decimals, list(parsed.stamps), fraction)
 
 
 def _expected_rows(path: Path, layout: Layout) -> int:

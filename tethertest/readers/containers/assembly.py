@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.guards.limits import CELLS, COLUMNS, COMPRESSION_RATIO, RATIO_FROM
 from tethertest.readers.containers.table import Column, Table, listed, toml_text
 from tethertest.readers.containers.tree import Leaf, Tree
+from tethertest.readers.guards.limits import CELLS, COLUMNS, COMPRESSION_RATIO, RATIO_FROM
 from tethertest.readers.timeunits import Facts, is_time_name
 from tethertest.records.run import Log
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.guards.limits import SHEET_CELLS
 from tethertest.readers.containers.workbook import Merged, checked_sheet, column_name, merged_cells
+from tethertest.readers.guards.limits import SHEET_CELLS
 from tethertest.readers.timeunits import CLOCK_UNIT
 
 #: what is no part of the number in a format: quoted, escaped, padding, and brackets other than [h], [m], [s]

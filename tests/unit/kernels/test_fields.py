@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tethertest.kernels import fields
+from tethertest.kernels import decimals, fields
 
 Run = Callable[[Any], Any]
 
@@ -22,33 +22,43 @@ def scan(run, text, *, separator=",", decimal=".", kinds, least=None, counter=-1
     for kind in (fields.NUMBER, fields.STAMP):
         places[kinds == kind] = np.arange(np.count_nonzero(kinds == kind))
     capacity = text.count("\n")
-    values = np.full((max(1, int(np.sum(kinds == fields.NUMBER))), capacity), -7.0)
-    ticks = np.zeros(capacity, np.int64)
-    stamps = np.full((int(np.sum(kinds == fields.STAMP)), capacity, 24), 255, np.uint8)
-    lines = np.zeros(capacity, np.int64)
-    cells = np.zeros((odd, 4), np.int64)
-    least = len(kinds) if least is None else least
-    position, rows, line, odds, status, count = run(fields.scan_rows)(
-        data, 0, 0 if separator == " " else ord(separator), ord(decimal), least, kinds, places, counter,
-        decimals, 0, 0, values, values.view(np.uint64), ticks, stamps, lines, cells,
+    form = fields.RowForm(
+        0 if separator == " " else ord(separator), ord(decimal), len(kinds) if least is None else least,
+        kinds, places, counter, decimals,
     )  # fmt: skip
-    found = [(row, column, text.encode()[a:b].decode()) for row, column, a, b in cells[:odds].tolist()]
-    texts = [[bytes(cell).rstrip(b"\0").decode() for cell in column[:rows]] for column in stamps]
+    values = np.full((max(1, int(np.sum(kinds == fields.NUMBER))), capacity), -7.0)
+    found = fields.RowArrays(
+        values=values,
+        words=values.view(np.uint64),
+        ticks=np.zeros(capacity, np.int64),
+        stamps=np.full((int(np.sum(kinds == fields.STAMP)), capacity, 24), 255, np.uint8),
+        lines=np.zeros(capacity, np.int64),
+        odd=np.zeros((odd, 4), np.int64),
+    )
+    end = run(fields.scan_rows)(data, form, found, fields.Reached(0, 0, 0))
+    rows = end.rows
     return {
-        "values": values[:, :rows].tolist(), "ticks": ticks[:rows].tolist(), "lines": lines[:rows].tolist(),
-        "stamps": texts, "odd": found, "status": status, "count": count, "position": position, "line": line,
-    }  # fmt: skip
+        "values": found.values[:, :rows].tolist(),
+        "ticks": found.ticks[:rows].tolist(),
+        "lines": found.lines[:rows].tolist(),
+        "stamps": [[bytes(cell).rstrip(b"\0").decode() for cell in column[:rows]] for column in found.stamps],
+        "odd": [(row, column, text.encode()[a:b].decode()) for row, column, a, b in found.odd[: end.odds]],
+        "status": end.status,
+        "count": end.fields,
+        "position": end.position,
+        "line": end.line,
+    }
 
 
 def bits(run, digits, exponent):
-    return np.uint64(run(fields.double_bits)(np.uint64(digits), exponent)).view(np.float64).item()
+    return np.uint64(run(decimals.double_bits)(np.uint64(digits), exponent)).view(np.float64).item()
 
 
 def test_doubles_are_the_nearest(run: Run) -> None:
     chance = random.Random(1)
     for _ in range(3000):
         digits = chance.randrange(10 ** chance.randrange(1, 20))
-        exponent = chance.randrange(fields.LOWEST, fields.HIGHEST + 1)
+        exponent = chance.randrange(decimals.LOWEST, decimals.HIGHEST + 1)
         assert bits(run, digits, exponent) == float(f"{digits}e{exponent}")
 
 
@@ -66,7 +76,7 @@ def test_doubles_half_way_between_two_go_to_the_even_one(run: Run) -> None:
 
 
 def test_the_ends_of_the_table_of_powers(run: Run) -> None:
-    for exponent in (fields.LOWEST, -28, -27, -5, -4, 0, 22, 23, 24, fields.HIGHEST):
+    for exponent in (decimals.LOWEST, -28, -27, -5, -4, 0, 22, 23, 24, decimals.HIGHEST):
         for digits in (1, 9, 2**53 - 1, 2**53 + 1, 2**64 - 1):
             assert bits(run, digits, exponent) == float(f"{digits}e{exponent}")
     assert bits(run, 0, 5) == 0.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from itertools import islice
 from pathlib import Path
-from typing import Final, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Final, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,9 @@ from tethertest.readers.text.table import (
 )
 from tethertest.readers.text.textlog import TextBlock
 from tethertest.records.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from tethertest.kernels import fields
 
 Integers: TypeAlias = npt.NDArray[np.int64]
 Characters: TypeAlias = npt.NDArray[np.uint8]
@@ -95,47 +98,63 @@ def parse_block(block: TextBlock, plan: RowPlan) -> Parsed:
     from tethertest.kernels import fields
 
     text = np.frombuffer(block.text, np.uint8)[: block.size]
-    width = len(plan.names)
-    most = width + plan.spare
-    kinds = np.full(most, fields.UNUSED, np.uint8)
-    places = np.zeros(most, np.int64)
-    for columns, kind in ((plan.numbers, fields.NUMBER), (plan.stamps, fields.STAMP)):
-        for place, column in enumerate(columns):
-            kinds[column], places[column] = kind, place
-    kinds[width:] = fields.BLANK
+    text.flags.writeable = False  # one kind of array, so that the kernel is compiled once
+    form = _form(plan)
+    most = len(form.kinds)
     capacity = int(np.count_nonzero(text == ord("\n")))
-    numbers = np.empty((len(plan.numbers), capacity))
-    ticks = np.zeros(capacity if plan.counter is not None else 0, np.int64)
-    stamps = np.empty((len(plan.stamps), capacity, STAMP_BYTES), np.uint8)
-    lines = np.empty(capacity, np.int64)
-    odd = np.empty((max(_ODD_CELLS, 2 * most), 4), np.int64)
-    parsed = Parsed(numbers, ticks, stamps, lines, capacity)
-    position = rows = line = 0
+    values = np.empty((len(plan.numbers), capacity))
+    found = fields.RowArrays(
+        values=values,
+        words=values.view(np.uint64),
+        ticks=np.zeros(capacity if plan.counter is not None else 0, np.int64),
+        stamps=np.empty((len(plan.stamps), capacity, STAMP_BYTES), np.uint8),
+        lines=np.empty(capacity, np.int64),
+        odd=np.empty((max(_ODD_CELLS, 2 * most), 4), np.int64),
+    )
+    parsed = Parsed(found.values, found.ticks, found.stamps, found.lines, capacity)
+    reached = fields.Reached(0, 0, 0)
     problem: FileFormatError | None = None
-    status = fields.FULL
-    while status == fields.FULL and problem is None:
-        position, rows, line, odds, status, count = fields.scan_rows(
-            text, position, 0 if plan.separator == SPACES else ord(plan.separator), ord(plan.decimal),
-            width, kinds, places, -1 if plan.counter is None else plan.counter, plan.decimals, rows, line,
-            numbers, numbers.view(np.uint64), ticks, stamps, lines, odd,
-        )  # fmt: skip
-        problem = _settle_odd(block, plan, parsed, odd[:odds])
-    if problem is None and status == fields.QUOTE:
+    while reached.status == fields.FULL and problem is None:
+        reached = fields.scan_rows(text, form, found, reached)
+        problem = _settle_odd(block, plan, parsed, found.odd[: reached.odds])
+    rows, line = reached.rows, reached.line
+    if problem is None and reached.status == fields.QUOTE:
         problem = unclosed_quote(plan.path, line + 1)
-    elif problem is None and status == fields.WIDTH:
-        last = block.last and block.text.find(b"\n", position) == block.size - 1
-        problem = wrong_width(plan.path, line + 1, count, width, most, last=last)
+    elif problem is None and reached.status == fields.WIDTH:
+        last = block.last and block.text.find(b"\n", reached.position) == block.size - 1
+        problem = wrong_width(plan.path, line + 1, reached.fields, form.least, most, last=last)
     elif problem is None and block.last and not block.newline_at_end:
         tail = bytes(block.before) + bytes(block.text[: block.size - 1])
         if last_number_is_cut(tail):
             problem = cut_row(plan.path, line)
     if problem is not None and problem.line is not None:
-        rows = int(np.searchsorted(lines[:rows], problem.line - 1))
+        rows = int(np.searchsorted(found.lines[:rows], problem.line - 1))
     return Parsed(
-        numbers[:, :rows], ticks[:rows], stamps[:, :rows], lines[:rows], capacity,
+        found.values[:, :rows], found.ticks[:rows], found.stamps[:, :rows], found.lines[:rows], capacity,
         _before(rows, parsed.words), _before(rows, parsed.infinite),
         _comments(block) if rows < capacity else (), problem,
     )  # fmt: skip
+
+
+def _form(plan: RowPlan) -> fields.RowForm:
+    """Return the plan as the scan takes it."""
+    from tethertest.kernels import fields
+
+    width = len(plan.names)
+    kinds = np.full(width + plan.spare, fields.UNUSED, np.uint8)
+    places = np.zeros(width + plan.spare, np.int64)
+    for columns, kind in ((plan.numbers, fields.NUMBER), (plan.stamps, fields.STAMP)):
+        kinds[list(columns)], places[list(columns)] = kind, np.arange(len(columns))
+    kinds[width:] = fields.BLANK
+    return fields.RowForm(
+        separator=0 if plan.separator == SPACES else ord(plan.separator),
+        decimal=ord(plan.decimal),
+        least=width,
+        kinds=kinds,
+        places=places,
+        counter=-1 if plan.counter is None else plan.counter,
+        decimals=plan.decimals,
+    )
 
 
 def _comments(block: TextBlock) -> tuple[tuple[int, str], ...]:

@@ -53,6 +53,8 @@ class RowForm(NamedTuple):
     places: Integers  #: (most,) its place among the numbers or the stamps
     counter: int  #: column whose numbers are also returned as whole multiples of ``10**-decimals``, or -1
     decimals: int
+    has_quotes: bool  #: cells may be quoted
+    has_comments: bool  #: blank rows, and those that begin with ``#``, are passed over
 
 
 class RowArrays(NamedTuple):
@@ -147,10 +149,10 @@ def _keep_number(
 
 
 @compiled_small
-def _keep_stamp(text: Bytes, start: int, stop: int, cell: Bytes) -> bool:
+def _keep_stamp(text: Bytes, start: int, stop: int, is_quoted: bool, cell: Bytes) -> bool:
     """Write a stamp without quotes and the blanks in them; return whether it fits."""
     is_whole = True
-    if text[start] == _QUOTE and stop > start:
+    if is_quoted:
         is_whole = text[stop - 1] == _QUOTE
         start, stop = start + 1, stop - 1
         while stop > start and text[start] == _SPACE:
@@ -175,7 +177,7 @@ def _scan_row(
             break
         start = i
         kind = form.kinds[field] if field < len(form.kinds) else UNUSED
-        is_quoted = text[i] == _QUOTE
+        is_quoted = form.has_quotes and text[i] == _QUOTE
         if is_quoted:
             i += 1
         number = NOTHING
@@ -194,7 +196,7 @@ def _scan_row(
         if kind == NUMBER:
             is_told = _keep_number(number, is_alone and stop == end, row, field, form, found)
         elif kind == STAMP:
-            is_told = _keep_stamp(text, start, stop, found.stamps[form.places[field], row])
+            is_told = _keep_stamp(text, start, stop, is_quoted, found.stamps[form.places[field], row])
         if not is_told and kind != UNUSED and stop > start:
             odd = found.odd[odds]
             odd[0], odd[1], odd[2], odd[3] = row, field, start, stop
@@ -221,7 +223,7 @@ def _keep_blanks(row: int, field: int, form: RowForm, found: RowArrays) -> None:
 def scan_rows(text: Bytes, form: RowForm, found: RowArrays, begin: Reached) -> Reached:
     """Convert rows until the text ends or something stops the scan.
 
-    Empty rows, rows of blanks and rows that begin with ``#`` are passed over, but counted as lines.
+    Rows that are passed over are counted as lines.
 
     Parameters
     ----------
@@ -243,7 +245,7 @@ def scan_rows(text: Bytes, form: RowForm, found: RowArrays, begin: Reached) -> R
     at, row, line, odds = begin.position, begin.rows, begin.line, 0
     while at < len(text):
         first = _after_blanks(text, at, form.separator)
-        if text[first] == _LINE_FEED or text[at] == _HASH:
+        if form.has_comments and (text[first] == _LINE_FEED or text[at] == _HASH):
             while text[first] != _LINE_FEED:
                 first += 1
             at = first + 1

@@ -15,7 +15,20 @@ from tethertest.kernels import decimals, fields
 Run = Callable[[Any], Any]
 
 
-def scan(run, text, *, separator=",", decimal=".", kinds, least=None, counter=-1, decimals=9, odd=64):
+def scan(
+    run,
+    text,
+    *,
+    separator=",",
+    decimal=".",
+    kinds,
+    least=None,
+    counter=-1,
+    decimals=9,
+    odd=64,
+    quotes=True,
+    comments=True,
+):
     data = np.frombuffer(text.encode(), np.uint8)
     kinds = np.array(kinds, np.uint8)
     places = np.zeros(len(kinds), np.int64)
@@ -24,7 +37,7 @@ def scan(run, text, *, separator=",", decimal=".", kinds, least=None, counter=-1
     capacity = text.count("\n")
     form = fields.RowForm(
         0 if separator == " " else ord(separator), ord(decimal), len(kinds) if least is None else least,
-        kinds, places, counter, decimals,
+        kinds, places, counter, decimals, quotes, comments,
     )  # fmt: skip
     values = np.full((max(1, int(np.sum(kinds == fields.NUMBER))), capacity), -7.0)
     found = fields.RowArrays(
@@ -134,6 +147,17 @@ def test_the_scan_stops_before_a_row_of_another_width(run: Run, row: str, count:
 def test_an_open_quote_stops_the_scan(run: Run) -> None:
     found = scan(run, '"1,2\n3,4\n', kinds=[0, 0])
     assert (found["status"], found["position"]) == (fields.QUOTE, 0)
+
+
+def test_without_quotes_a_quote_is_a_character(run: Run) -> None:
+    found = scan(run, '"1,"\n2,3\n', kinds=[0, 0], quotes=False)
+    assert (found["status"], found["odd"]) == (fields.DONE, [(0, 0, '"1'), (0, 1, '"')])
+
+
+def test_without_comments_every_line_is_a_row(run: Run) -> None:
+    found = scan(run, "1,2\n#x,y\n , \n", kinds=[0, 0], comments=False)
+    assert (found["lines"], found["odd"]) == ([0, 1, 2], [(1, 0, "#x"), (1, 1, "y")])
+    np.testing.assert_array_equal(found["values"], [[1, np.nan, np.nan], [2, np.nan, np.nan]])
 
 
 def test_a_quoted_separator_does_not_separate(run: Run) -> None:

@@ -12,10 +12,11 @@ import numpy.typing as npt
 from tethertest.errors import DataError, FileFormatError
 from tethertest.readers.channels import unique_names
 from tethertest.readers.registry import GENERIC, identified
+from tethertest.readers.text.columns import read_columns
 from tethertest.readers.text.document import read_document
 from tethertest.readers.text.layout import find_layout
 from tethertest.readers.text.stamps import parse_stamps
-from tethertest.readers.text.table import Rows, check_widths, find_rows, read_columns
+from tethertest.readers.text.table import Rows, check_widths, find_rows
 from tethertest.records.arrays import FloatArray
 from tethertest.records.run import DEFAULT
 

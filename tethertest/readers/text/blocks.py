@@ -63,6 +63,10 @@ class RowPlan:
     counter: int | None = None  #: column whose numbers are also wanted as exact ticks
     decimals: int = 0  #: a tick is 10**-decimals
     spare: bool = False  #: rows may end with one more separator, behind which nothing stands
+    texts: tuple[int, ...] = ()  #: columns whose cells are returned as they are
+    least: int | None = None  #: fewest fields of a row; None for all
+    has_quotes: bool = True  #: cells may be quoted
+    has_comments: bool = True  #: blank rows, and those that begin with #, are passed over
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,6 +78,7 @@ class Parsed:
     stamps: Characters  #: (columns, n, STAMP_BYTES) zero behind the end of a stamp
     lines: Integers  #: (n,) line of each row, from 0 at the start of the block
     line_count: int  #: lines of the block
+    texts: dict[int, list[str]] = field(default_factory=dict)  #: column -> n cells, "" where blank
     words: dict[tuple[int, str], list[int]] = field(default_factory=dict)  #: column, word -> rows
     infinite: dict[int, list[int]] = field(default_factory=dict)  #: column -> rows
     comments: tuple[tuple[int, str], ...] = ()  #: line, from 0 at the start of the block, and text
@@ -111,7 +116,8 @@ def parse_block(block: TextBlock, plan: RowPlan) -> Parsed:
         lines=np.empty(capacity, np.int64),
         odd=np.empty((max(_ODD_CELLS, 2 * most), 4), np.int64),
     )
-    parsed = Parsed(found.values, found.ticks, found.stamps, found.lines, capacity)
+    texts = {column: [""] * capacity for column in plan.texts}
+    parsed = Parsed(found.values, found.ticks, found.stamps, found.lines, capacity, texts)
     reached = fields.Reached(0, 0, 0)
     problem: FileFormatError | None = None
     while reached.status == fields.FULL and problem is None:
@@ -130,10 +136,17 @@ def parse_block(block: TextBlock, plan: RowPlan) -> Parsed:
     if problem is not None and problem.line is not None:
         rows = int(np.searchsorted(found.lines[:rows], problem.line - 1))
     return Parsed(
-        found.values[:, :rows], found.ticks[:rows], found.stamps[:, :rows], found.lines[:rows], capacity,
-        _before(rows, parsed.words), _before(rows, parsed.infinite),
-        _comments(block) if rows < capacity else (), problem,
-    )  # fmt: skip
+        numbers=found.values[:, :rows],
+        ticks=found.ticks[:rows],
+        stamps=found.stamps[:, :rows],
+        lines=found.lines[:rows],
+        line_count=capacity,
+        texts={column: cells[:rows] for column, cells in parsed.texts.items()},
+        words=_before(rows, parsed.words),
+        infinite=_before(rows, parsed.infinite),
+        comments=_comments(block) if plan.has_comments and rows < capacity else (),
+        problem=problem,
+    )
 
 
 def _form(plan: RowPlan) -> fields.RowForm:
@@ -145,15 +158,18 @@ def _form(plan: RowPlan) -> fields.RowForm:
     places = np.zeros(width + plan.spare, np.int64)
     for columns, kind in ((plan.numbers, fields.NUMBER), (plan.stamps, fields.STAMP)):
         kinds[list(columns)], places[list(columns)] = kind, np.arange(len(columns))
+    kinds[list(plan.texts)] = fields.BLANK  # whatever stands there is odd
     kinds[width:] = fields.BLANK
     return fields.RowForm(
         separator=0 if plan.separator == SPACES else ord(plan.separator),
         decimal=ord(plan.decimal),
-        least=width,
+        least=width if plan.least is None else plan.least,
         kinds=kinds,
         places=places,
         counter=-1 if plan.counter is None else plan.counter,
         decimals=plan.decimals,
+        has_quotes=plan.has_quotes,
+        has_comments=plan.has_comments,
     )
 
 
@@ -178,8 +194,9 @@ def _settle_odd(block: TextBlock, plan: RowPlan, parsed: Parsed, odd: Integers) 
     """Read the cells that the scan has left: words for missing, numbers of many digits, quoted text."""
     pattern = NUMBER_PATTERNS[plan.decimal]
     place_of = {column: place for place, column in enumerate(plan.numbers)}
-    for row, column, start, stop in odd[~_common_words(block, plan, parsed, odd)].tolist():
-        cell = _unquoted(block.text[start:stop].decode(errors="replace"))
+    done = _common_words(block, plan, parsed, odd) | _texts(block, plan, parsed, odd)
+    for row, column, start, stop in odd[~done].tolist():
+        cell = _cell(block, plan, start, stop)
         line = int(parsed.lines[row]) + 1
         if column >= len(plan.names):
             if cell:
@@ -240,7 +257,30 @@ def _common_words(block: TextBlock, plan: RowPlan, parsed: Parsed, odd: Integers
     return done
 
 
-def _unquoted(cell: str) -> str:
-    if len(cell) > 1 and cell[0] == cell[-1] == '"':
+def _texts(block: TextBlock, plan: RowPlan, parsed: Parsed, odd: Integers) -> npt.NDArray[np.bool_]:
+    """Keep the cells of columns of text; return which they are."""
+    done = np.zeros(len(odd), np.bool_)
+    for column in plan.texts:
+        here = odd[:, 1] == column
+        if not np.any(here):
+            continue
+        done |= here
+        rows, _, starts, stops = odd[here].T.tolist()
+        cells, first = parsed.texts[column], starts[0]
+        piece = bytes(block.text[first : stops[-1]])
+        if not piece.isascii() or (plan.has_quotes and b'"' in piece):
+            for row, start, stop in zip(rows, starts, stops, strict=True):
+                cells[row] = _cell(block, plan, start, stop)
+            continue
+        text = piece.decode("ascii")  # at once: there may be one in every row
+        for row, start, stop in zip(rows, starts, stops, strict=True):
+            cells[row] = text[start - first : stop - first]
+    return done
+
+
+def _cell(block: TextBlock, plan: RowPlan, start: int, stop: int) -> str:
+    """Return the text of a cell, without its quotes."""
+    cell = block.text[start:stop].decode(errors="replace")
+    if plan.has_quotes and len(cell) > 1 and cell[0] == cell[-1] == '"':
         cell = cell[1:-1].replace('""', '"')
     return cell.strip()

@@ -1,27 +1,16 @@
-"""Rows of a text log into columns of numbers, fast, and never shifted by one.
-
-The bulk is read by pandas; before that every row's fields are counted, because pandas fills short rows and
-drops long ones without a word.
-"""
+"""The rows of a text log as the readers of instruments find them, and what may stand in their cells."""
 
 from __future__ import annotations
 
-import csv
-import io
 import re
-from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from tethertest.errors import FileFormatError
-from tethertest.records.arrays import FloatArray
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SPACES: Final = "spaces"  #: separator of columns that are aligned by blanks
 #: cells that loggers write where they have no value; each use ends up in the log's remarks
@@ -57,15 +46,6 @@ class Rows:
         return replace(
             self, body=body, lines=self.lines[mask], counts=self.counts[mask], newline_at_end=complete
         )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Columns:
-    """Parsed columns and what a person should know about them."""
-
-    numbers: dict[int, FloatArray]  #: (n,) NaN where the cell is blank
-    texts: dict[int, list[str]]  #: n cells, "" where blank
-    remarks: tuple[str, ...]
 
 
 def find_rows(
@@ -172,115 +152,9 @@ def cut_row(path: Path, line: int) -> FileFormatError:
     return FileFormatError(message, remedy, path=path, line=line)
 
 
-def read_columns(
-    rows: Rows,
-    width: int,
-    names: Collection[str],
-    *,
-    texts: Collection[int] = (),
-    unused: Collection[int] = (),
-) -> Columns:
-    """Parse the rows.
-
-    Parameters
-    ----------
-    rows : Rows
-        Rows whose widths were checked; short rows are filled with blanks.
-    width : int
-        Number of columns.
-    names : collection of str
-        Names of the columns, for messages.
-    texts, unused : collection of int
-        Columns that are returned as text, or not at all; all others must be numbers.
-
-    Raises
-    ------
-    FileFormatError
-        A cell is neither blank, nor a number, nor one of `MISSING_TOKENS`.
-    """
-    import pandas as pd
-
-    stray = rows.body.find(b"\r")
-    if stray >= 0:  # pandas would begin a row there
-        message = "found a carriage return inside a row"
-        line = int(rows.lines[rows.body.count(b"\n", 0, stray)])
-        raise FileFormatError(message, "copy the log again, as binary", path=rows.path, line=line)
-    present = min(width, int(rows.counts.max()))
-    wanted = [column for column in range(present) if column not in unused]
-    numeric = [column for column in wanted if column not in texts]
-    labels = list(names)
-    remarks: list[str] = []
-    try:
-        frame = _parsed(rows, wanted, texts)
-        odd = [column for column in numeric if frame[column].dtype.kind not in "iuf"]
-        words = _parsed(rows, odd, odd) if odd else frame
-    except pd.errors.ParserError as error:
-        message = f"the rows cannot be split into columns ({error})"
-        raise FileFormatError(message, "export the log without quotes", path=rows.path) from error
-    numbers = {
-        column: _converted(words[column], rows, labels[column], remarks)
-        if column in odd
-        else frame[column].to_numpy(dtype=np.float64)
-        for column in numeric
-    }
-    for column, values in numbers.items():
-        infinite = np.isinf(values)
-        if np.any(infinite):
-            remarks.append(
-                f"column {labels[column]!r}: {np.count_nonzero(infinite)} infinite values read as missing"
-            )
-            numbers[column] = np.where(infinite, np.nan, values)
-    cells = {column: frame[column].fillna("").astype(object).tolist() for column in wanted if column in texts}
-    return Columns(numbers, cells, tuple(remarks))
-
-
 def is_number(text: str, decimal: str) -> bool:
     """Return whether a cell is a number with that decimal sign."""
     return NUMBER_PATTERNS[decimal].fullmatch(text.strip()) is not None
-
-
-def _parsed(rows: Rows, wanted: list[int], texts: Collection[int]) -> pd.DataFrame:
-    """Parse columns: text where asked for, else numbers, or text again where a cell is no number."""
-    import pandas as pd
-
-    return pd.read_csv(
-        io.BytesIO(rows.body),
-        sep=r"\s+" if rows.separator == SPACES else rows.separator,
-        decimal=rows.decimal,
-        header=None,
-        names=list(range(int(rows.counts.max()))),
-        usecols=wanted,
-        dtype={column: str for column in wanted if column in texts},
-        na_values=[""],
-        keep_default_na=False,
-        skip_blank_lines=False,
-        index_col=False,
-        encoding="utf-8",
-        engine="c",
-        low_memory=False,
-        quoting=csv.QUOTE_MINIMAL if rows.quotes else csv.QUOTE_NONE,
-    )
-
-
-def _converted(cells: pd.Series, rows: Rows, name: str, remarks: list[str]) -> FloatArray:
-    """Convert cell by cell, for columns that are not plain numbers throughout."""
-    pattern = NUMBER_PATTERNS[rows.decimal]
-    values = np.full(len(cells), np.nan)
-    tokens: dict[str, list[int]] = {}
-    for row, cell in enumerate(cells.fillna("").astype(object)):
-        text = cell.strip()
-        if pattern.fullmatch(text):
-            values[row] = float(text.replace(",", "."))
-        elif text.lower() in MISSING_TOKENS:
-            tokens.setdefault(text, []).append(row)
-        elif text:
-            raise no_number(text, rows.path, rows.decimal, name, int(rows.lines[row]))
-    for token, where in tokens.items():
-        first = rows.lines[where[0]]
-        remarks.append(
-            f"column {name!r}: {len(where)} cells {token!r} read as missing, first in line {first}"
-        )
-    return values
 
 
 def no_number(text: str, path: Path, decimal: str, name: str, line: int) -> FileFormatError:

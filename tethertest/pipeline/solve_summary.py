@@ -22,7 +22,7 @@ class ErrorSummary:
     peak: Annotated[float | None, Doc("of the largest 20 ms mean, where the cable goes slack")]
     peak_range: Annotated[
         tuple[float, float] | None,
-        Doc("lowest and highest peak over the nominal one, of the members that tell the spread"),
+        Doc("of the members that tell the spread, over the nominal one"),
     ]
 
 
@@ -36,7 +36,7 @@ class GaugeSummary:
     maximum: Annotated[float | None, Doc("largest tension")]
     smoothed_maximum: Annotated[
         float | None,
-        Doc("of the running mean over 20 ms; null below 100 rows a second where the cable stays taut"),
+        Doc("of the 20 ms mean; null: too few rows a second"),
     ]
 
 
@@ -55,13 +55,11 @@ class SolveSummary:
     wall_s: Annotated[float, Doc("time that the solve took [s]")]
     error: ErrorSummary
     gauges: Annotated[tuple[GaugeSummary, ...], Doc("in the order of the scene")]
-    slack: Annotated[
-        dict[str, tuple[tuple[float, float], ...]], Doc("gauge -> spans of zero tension, start and stop [s]")
-    ]
+    slack: Annotated[dict[str, tuple[tuple[float, float], ...]], Doc("gauge -> spans of zero tension [s]")]
     warnings: Annotated[tuple[str, ...], Doc("what the solver does not vouch for")]
     numbers: Annotated[
         dict[str, float | None],
-        Doc("what chose the model and bounds it: frequency ratios, strain and others"),
+        Doc("frequency ratios, strain and others that chose the model"),
     ]
 
 

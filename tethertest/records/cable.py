@@ -19,21 +19,14 @@ class Cable:
     """A uniform cable; its length and mass per length belong to one state."""
 
     length: Annotated[float, SI("m", "along the cable, in the state of length_state", above=0.0)]
-    length_state: Annotated[
-        LengthState, Doc("what length and mass_per_length belong to: the cable without tension, or at rest")
-    ]
+    length_state: Annotated[LengthState, Doc("what length and mass belong to: no tension, or at rest")]
     mass_per_length: Annotated[float, SI("kg/m", "in the state of length_state", above=0.0)]
     axial_stiffness: Annotated[float, SI("N", "EA", above=0.0)] | None = None
-    youngs_modulus: (
-        Annotated[float, SI("Pa", "E; with the diameter in place of axial_stiffness", above=0.0)] | None
-    ) = None
-    diameter: (
-        Annotated[float, SI("m", "of the whole section, for drag and for EA from E", above=0.0)] | None
-    ) = None
-    axial_damping_time: (
-        Annotated[float, SI("s", "Kelvin-Voigt: viscous over elastic tension per strain rate", minimum=0.0)]
-        | None
-    ) = None  #: None is unknown
+    youngs_modulus: Annotated[float, SI("Pa", "E; gives EA by the diameter", above=0.0)] | None = None
+    diameter: Annotated[float, SI("m", "of the section, for drag and EA", above=0.0)] | None = None
+    axial_damping_time: Annotated[float, SI("s", "Kelvin-Voigt damping", minimum=0.0)] | None = (
+        None  #: None is unknown
+    )
     bending_stiffness: Annotated[float, SI("N m^2", "EI", minimum=0.0)] = 0.0
 
     def __post_init__(self) -> None:
@@ -48,12 +41,7 @@ class Air:
     normal_drag: Annotated[float, SI("1", "drag coefficient across the cable", minimum=0.0)] = 0.0
     tangential_drag: Annotated[float, SI("1", "drag coefficient along the cable", minimum=0.0)] = 0.0
     wind: Annotated[Speed | tuple[Speed, ...], Doc("steady wind: along x, or its components")] = 0.0
-    wind_file: (
-        Annotated[
-            str, Doc("series of the wind beside the scene, with a time column and wind_x, wind_y, wind_z")
-        ]
-        | None
-    ) = None
+    wind_file: Annotated[str, Doc("series of wind_x, wind_y, wind_z beside the scene")] | None = None
 
     def __post_init__(self) -> None:
         check_types(self)
@@ -79,9 +67,7 @@ class Platform:
     modes: Annotated[dict[str, PlatformMode], Doc("name of a mode -> its position loop")] = field(
         default_factory=lambda: {"free": PlatformMode()}
     )
-    drag_area: Annotated[tuple[Area, Area], Doc("drag coefficient times area, forward and upward")] | None = (
-        None
-    )
+    drag_area: Annotated[tuple[Area, Area], Doc("drag times area, forward and upward")] | None = None
     tilt: Annotated[float, SI("rad", "by which the body leans down from level, forward")] = 0.0
 
     def __post_init__(self) -> None:

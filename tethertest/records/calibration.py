@@ -18,16 +18,11 @@ class Calibration:
     """How a load cell's output becomes force: pairs of output and force, in a log or written here."""
 
     log: Annotated[str, Doc("file of ``measured,real`` pairs beside the rig file")] | None = None
-    units: (
-        Annotated[tuple[str, str], Doc("units of the log's two columns, where its header names none")] | None
-    ) = None
+    units: Annotated[tuple[str, str], Doc("units of the log's two columns, where it names none")] | None = (
+        None
+    )
     points: Annotated[tuple[tuple[str, str], ...], Doc("pairs of output and force, text with units")] = ()
-    order: (
-        Annotated[
-            int, Doc("order of the polynomial fitted to the pairs; straight lines between them without it")
-        ]
-        | None
-    ) = None
+    order: Annotated[int, Doc("order of the fitted polynomial; else straight lines")] | None = None
     reference: Annotated[float, SI("1", _REFERENCE, minimum=0.0, maximum=0.1)] | None = None
 
 

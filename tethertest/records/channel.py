@@ -301,7 +301,7 @@ class Finding:
     text: Annotated[str, Doc("what was seen, in words")]
     severity: Annotated[Severity, Doc("fatal: nothing can be decided")] = Severity.WARNING
     spans: Annotated[
-        tuple[tuple[float, float], ...], Doc("where it was seen, start and stop on the run's clock [s]")
+        tuple[tuple[float, float], ...], Doc("where, start and stop on the run's clock [s]")
     ] = ()
     samples: Annotated[int, Doc("how many samples it concerns")] = 0
 

@@ -27,15 +27,9 @@ class Metric:
     unit: Annotated[str, Doc("of measured and replayed, SI")]
     measured: Annotated[float | None, Doc("null where the metric has no such number")]
     replayed: Annotated[float | None, Doc("null where the metric has no such number")]
-    error: Annotated[
-        float, Doc("relative, or in rad for a phase; what the limit applies to", null="not known")
-    ]
-    uncertainty: Annotated[
-        float, Doc("standard uncertainty of the error: numerical, input and data together", null="not known")
-    ]
-    limit: Annotated[
-        float | None, Doc("largest size of the error that passes; null: the metric only informs")
-    ]
+    error: Annotated[float, Doc("relative; of a phase in rad", null="not known")]
+    uncertainty: Annotated[float, Doc("standard uncertainty of the error", null="not known")]
+    limit: Annotated[float | None, Doc("largest error that passes; null: none")]
     verdict: Annotated[Verdict, Doc("error and uncertainty against the limit")]
     reason: Annotated[str, Doc("the verdict in words, with the numbers")]
 

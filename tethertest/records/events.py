@@ -36,9 +36,7 @@ class Front:
     channel: Annotated[str, Doc("sensor of the rig")]
     at: Annotated[float, Doc("fraction of the cable's length from the bottom")]
     time: Annotated[float, Doc("of the onset [s]")]
-    interval: Annotated[
-        Interval, Doc("95 % of the time [s]; holds the onset of a jump, a ramp or a parabola")
-    ]
+    interval: Annotated[Interval, Doc("holds the onset of a jump, a ramp or a parabola [s]")]
 
 
 @dataclass(frozen=True, slots=True)

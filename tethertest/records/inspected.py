@@ -60,9 +60,7 @@ class LogSeen:
     format: Annotated[str, Doc("name of the reader")]
     reason: Annotated[str, Doc("why this reader was chosen")]
     encoding: Annotated[str, Doc("of a text")]
-    start: Annotated[
-        str | None, Doc("first stamp as written, ISO 8601, without zone where the file has none")
-    ]
+    start: Annotated[str | None, Doc("first stamp, ISO 8601; no zone where the file has none")]
     decimal: Annotated[str, Doc("sign before decimals in a text")]
     separator: Annotated[str, Doc("between columns of a text")]
     date_order: Annotated[str, Doc("ymd, dmy or mdy where a text has dates")]

@@ -46,17 +46,12 @@ class Log:
     decimal: Annotated[Literal[".", ","], Doc("sign before the decimals")] | None = None
     separator: Annotated[str, Doc("between columns")] | None = None
     date_order: Annotated[Literal["ymd", "dmy", "mdy"], Doc("of year, month and day in dates")] | None = None
-    time_zone: (
-        Annotated[str, Doc("of the stamps, such as Asia/Shanghai or +08:00; the run's without it")] | None
-    ) = None
+    time_zone: Annotated[str, Doc("of the stamps, such as +08:00; else the run's")] | None = None
     skip_rows: Annotated[int, Doc("rows before the header")] = 0
     units: Annotated[dict[str, str], Doc("name in the file -> unit, where the file has none")] = field(
         default_factory=dict
     )
-    table: (
-        Annotated[str, Doc("what to read in a container: member, sheet, path of keys, group or variable")]
-        | None
-    ) = None
+    table: Annotated[str, Doc("in a container: member, sheet, path of keys, group or variable")] | None = None
     columns: Annotated[tuple[str, ...], Doc("names of the columns in order, where the file has none")] = ()
     time: Annotated[str, Doc("name of the column or data set that is the time")] | None = None
     rate: Annotated[float, SI("Hz", "of the samples, where there is no time", above=0.0)] | None = None
@@ -116,17 +111,15 @@ class RunFile:
 
     id: Annotated[str, Doc("by which reports and stores know the run")]
     rig: Annotated[str, Doc("name of a rig file, found upwards from the run folder in rigs/")]
-    date: Annotated[
-        dt.datetime, Doc("start by the laboratory's clock, with its zone; reports take dates from here")
-    ]
+    date: Annotated[dt.datetime, Doc("start, with its zone; reports take dates from here")]
     drive: Drive
     log: Annotated[tuple[Log, ...], Doc("[[log]] tables")]
     platform: RunPlatform = RunPlatform("free")
     title: Annotated[str, Doc("printed, never required")] = ""
     operator: Annotated[str, Doc("printed, never required")] = ""
-    purpose: Annotated[
-        Literal["validation", "calibration"], Doc("a calibration run is never judged as a validation")
-    ] = "validation"
+    purpose: Annotated[Literal["validation", "calibration"], Doc("a calibration is not judged")] = (
+        "validation"
+    )
     windows: Windows = Windows()
     exclude: Annotated[tuple[Exclude, ...], Doc("[[exclude]] tables")] = ()
     override: Override = Override()

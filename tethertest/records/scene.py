@@ -42,9 +42,7 @@ class Geometry:
 
     kind: Annotated[Literal["shallow", "straight", "vertical", "ends", "hovering"], Doc(_SHAPES)]
     tension: Annotated[float, SI("N", _TENSION, above=0.0)] | None = None
-    top: (
-        Annotated[tuple[Length, ...], Doc("position of the top from the bottom: [x, z] or [x, y, z]")] | None
-    ) = None
+    top: Annotated[tuple[Length, ...], Doc("of the top from the bottom: [x, z] or [x, y, z]")] | None = None
 
     def __post_init__(self) -> None:
         check_types(self)
@@ -64,9 +62,7 @@ class Bottom:
     radius: Annotated[float, SI("m", "of the crank", minimum=0.0)] | None = None
     rod_ratio: Annotated[float, SI("1", ROD_RATIO, minimum=0.0, maximum=0.99)] | None = None
     velocity: Annotated[float, SI("m/s", "from the start on, of a step")] | None = None
-    start: Annotated[
-        Literal["jump", "ramp"], Doc("at full speed at once, or growing over the time of ramp")
-    ] = "jump"
+    start: Annotated[Literal["jump", "ramp"], Doc("at once, or growing over ramp")] = "jump"
     ramp: Annotated[float, SI("s", "over which the motion grows to its full size", above=0.0)] | None = None
     file: Annotated[str, Doc("table of a measured motion, beside the scene")] | None = None
     time_column: Annotated[str, Doc("name of its time column")] | None = None
@@ -83,22 +79,11 @@ class Top:
 
     kind: Annotated[Literal["fixed", "platform"], Doc("held fast, or a mass under lift")]
     mass: Annotated[float, SI("kg", "of the platform", minimum=0.0)] | None = None
-    static_tension: (
-        Annotated[float, SI("N", "top tension at rest, which the lift holds", above=0.0)] | None
-    ) = None
-    lift: (
-        Annotated[Force | tuple[Force, ...], Doc("in place of static_tension: upwards, or its components")]
-        | None
-    ) = None
-    hover_stiffness: Annotated[
-        Stiffness | tuple[Stiffness, ...], Doc("of the position loop, in all directions or by components")
-    ] = 0.0
-    hover_damping: Annotated[
-        Damping | tuple[Damping, ...], Doc("of the position loop, in all directions or by components")
-    ] = 0.0
-    drag_area: Annotated[tuple[Area, Area], Doc("drag coefficient times area, forward and upward")] | None = (
-        None
-    )
+    static_tension: Annotated[float, SI("N", "at rest, which the lift holds", above=0.0)] | None = None
+    lift: Annotated[Force | tuple[Force, ...], Doc("upwards, or its components")] | None = None
+    hover_stiffness: Annotated[Stiffness | tuple[Stiffness, ...], Doc("of the position loop")] = 0.0
+    hover_damping: Annotated[Damping | tuple[Damping, ...], Doc("of the position loop")] = 0.0
+    drag_area: Annotated[tuple[Area, Area], Doc("drag times area, forward and upward")] | None = None
     tilt: Annotated[float, SI("rad", "by which the body leans down from level, forward")] = 0.0
 
     def __post_init__(self) -> None:

@@ -44,9 +44,7 @@ class Similarity:
 
     groups: Annotated[tuple[PiGroup, ...], Doc("dimensionless products of the variables")]
     ratios: Annotated[dict[str, float], Doc("quantity -> prototype over model")]
-    conflicts: Annotated[
-        tuple[tuple[str, ...], ...], Doc("smallest sets of demands that cannot hold together")
-    ]
+    conflicts: Annotated[tuple[tuple[str, ...], ...], Doc("least demands that exclude each other")]
     rank: Annotated[int, Doc("of the matrix of dimensions")]
     remarks: Annotated[tuple[str, ...], Doc("what a person should know")] = ()
 

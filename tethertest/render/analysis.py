@@ -72,9 +72,7 @@ class OrderSeparated:
     down_interval: Annotated[Interval, Doc("95 % of down [N]")]
     energy_ratio: Annotated[float, Doc("weaker over stronger wave, 0 travelling to 1 standing")]
     energy_ratio_interval: Annotated[Interval, Doc("95 % of energy_ratio")]
-    standing_wave_ratio: Annotated[
-        float, Doc("largest over smallest amplitude along an endless cable", null="infinite")
-    ]
+    standing_wave_ratio: Annotated[float, Doc("largest over smallest amplitude", null="infinite")]
     standing: Annotated[bool | None, Doc("false: travelling; null: the interval does not settle it")]
     power: Annotated[float, Doc("mean power carried upwards [W]")]
     power_interval: Annotated[Interval, Doc("95 % of the power [W]")]
@@ -114,9 +112,7 @@ class LargestFound:
     """Where along the cable and when the replayed tension is largest."""
 
     at: Annotated[float, Doc("fraction of the length from the bottom")]
-    at_interval: Annotated[
-        Interval, Doc("fractions where the largest tension comes within the stated error of it")
-    ]
+    at_interval: Annotated[Interval, Doc("where the tension comes within the stated error of it")]
     time: Annotated[float, Doc("[s]")]
     value: Annotated[float, Doc("[N]")]
     bottom: Annotated[float, Doc("largest tension at the bottom [N]")]

@@ -33,16 +33,12 @@ class LineFound:
     order: Annotated[str, Doc("multiple of the drive frequency, such as 2 or 1/2")]
     frequency: Annotated[float, Doc("[Hz]")]
     amplitude: Annotated[float, Doc("peak of a cosine, de-biased, in the channel's unit")]
-    phase: Annotated[
-        float, Doc("[rad] of cos(2 pi p/q f0 t + phase), t = 0 at the window's start", null="none")
-    ]
+    phase: Annotated[float, Doc("of cos(2 pi p/q f0 t + phase), t = 0 at the window's start [rad]")]
     interval: Annotated[Span, Doc("95 % of the amplitude, noise and calibration together")]
     standard_error: Annotated[float, Doc("of the amplitude, by noise alone")]
     calibration_error: Annotated[float, Doc("standard error of the amplitude by the channel's scale alone")]
     p_value: Annotated[float, Doc("chance of so large an amplitude by noise alone", null="not tested")]
-    significant_above: Annotated[
-        float | None, Doc("amplitude, not de-biased, from which the line is significant; null: not known")
-    ]
+    significant_above: Annotated[float | None, Doc("amplitude as fitted from which a line is significant")]
     verdict: Annotated[LineVerdict, Doc("what the line is")]
     reason: Annotated[str, Doc("the verdict in words")]
 
@@ -76,9 +72,7 @@ class SnapFound:
     front: Annotated[float | None, Doc("largest increase within one round trip of a wave [N]")] = None
     speed: Annotated[float | None, Doc("of the two sides if the front starts at the sensor [m/s]")] = None
     speed_interval: Annotated[Interval | None, Doc("95 % of the speed [m/s]")] = None
-    arrived_speed: Annotated[
-        float | None, Doc("if the front arrives from elsewhere at a rigid end [m/s]")
-    ] = None
+    arrived_speed: Annotated[float | None, Doc("if the front comes from elsewhere to a rigid end")] = None
 
 
 EventFound = Annotated[SlackFound | SnapFound, Doc("in order of time")]

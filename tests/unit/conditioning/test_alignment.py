@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -191,3 +193,66 @@ def test_knocks_that_one_record_folds_are_not_compared(slower):
 def test_nothing_is_taken_from_records_that_follow_the_knocks():
     pair = Pair(knocked(400.0), knocked(100.0))
     assert without_folding(pair) is pair
+
+
+def test_a_timing_error_of_each_span_averages_over_the_spans():
+    """Seven spans of steady drive with 10 ms each: 10 ms / sqrt(7) where the drift is known."""
+    records = pair(3, start=-100.0).low_passed(4.0)
+    sure, unsure = (
+        fitted(Comparison(records, SPANS, 0.0, 4.0, systematic), (OFFSET, DRIFT), 1e-9, 4.0)
+        for systematic in (0.0, 0.01)
+    )
+    added = np.sqrt(unsure.covariance[0, 0] - sure.covariance[0, 0])
+    assert added == pytest.approx(0.01 / np.sqrt(len(SPANS)), rel=0.05)
+    assert unsure.offset == pytest.approx(sure.offset, abs=1e-6)
+
+
+def test_what_is_slow_in_one_record_only_moves_no_offset():
+    records = pair(3).low_passed(4.0)
+    time = records.clock.time
+    warming = 0.8 * np.cos(np.pi * (time - time[0]) / (time[-1] - time[0])) + 0.02 * (time - 30.0)
+    warmed = Pair(records.reference, replace(records.clock, values=records.clock.values + warming))
+    plain, bent = (
+        fitted(Comparison(item, SPANS, 0.03, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
+        for item in (records, warmed)
+    )
+    assert bent.offset == pytest.approx(plain.offset, abs=2e-4)
+    assert bent.explained == pytest.approx(plain.explained, abs=0.2)
+    # where only spans are compared each has a level of its own
+    stairs = 3.0 * np.searchsorted([stop for _, stop in SPANS], time)
+    stepped = Pair(records.reference, replace(records.clock, values=records.clock.values + stairs))
+    plain, bent = (
+        fitted(Comparison(item, SPANS, 0.0, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
+        for item in (records, stepped)
+    )
+    assert bent.offset == pytest.approx(plain.offset, abs=1e-4)
+
+
+@pytest.mark.parametrize("rates", [(200.0, 50.0), (40.0, 300.0)])
+def test_the_gain_is_that_of_the_reference_over_the_clock(rates):
+    records = pair(3, rates=rates).low_passed(4.0)
+    doubled = Pair(replace(records.reference, values=2.0 * records.reference.values), records.clock)
+    line = fitted(Comparison(doubled, SPANS, 0.03, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
+    assert line.gain == pytest.approx(2.0, rel=0.01)
+    assert line.explained > 0.99
+
+
+def test_each_span_says_how_late_it_is_and_how_sure():
+    """20 ms from 35 s on: about the line fitted the delays part by as much."""
+    compared, (line, _) = found(pair(5, jump=0.02))
+    left = delays(compared, line)
+    # whatever the line takes of it, early and late spans part by 20 ms less the drift between them
+    fitted_there = line.offset + line.drift * (np.array([item.time for item in left]) - OFFSET)
+    true = (
+        OFFSET
+        + DRIFT * np.array([item.time for item in left])
+        + 0.02 * (np.array([item.time for item in left]) > 35.0 + OFFSET)
+    )
+    clean = [abs(item.time - 36.3) > 4.0 for item in left]
+    missing = np.array([item.delay for item in left]) - (true - fitted_there)
+    assert np.max(np.abs(missing[clean])) < 1.5e-3
+    density = NOISE**2 * (1.0 / 200.0 + 1.0 / 50.0)
+    bound = np.sqrt(density / (0.5 * (2.0 * np.pi * FREQUENCY) ** 2 * 8.0))
+    compared, (line, _) = found(pair(5))
+    errors = [item.error for item in delays(compared, line)]
+    assert np.median(errors) == pytest.approx(bound, rel=0.3)

@@ -95,3 +95,44 @@ def test_a_dead_channel_is_stuck_where_its_noise_was_seen():
         values = np.round(np.random.default_rng(2).normal(40.0, noise, time.size))
         values[4000:] = 40.0
         assert np.count_nonzero(marked(time, values, Flag.STUCK)) == pytest.approx(2000, abs=4)
+
+
+def test_runs_that_chance_makes_are_no_fault():
+    """Three values at random: the longest run of thousands is at an extreme two times in three."""
+    for seed in range(30):
+        values = np.random.default_rng(seed).integers(0, 3, 4000).astype(float)
+        time = np.arange(4000) / 1000.0
+        assert not marked(time, values, Flag.STUCK | Flag.SATURATED).any()
+
+
+def test_a_limit_is_four_samples_in_a_row_and_every_other_touch_of_it():
+    random = np.random.default_rng(3)
+    time = np.arange(4000) / 1000.0
+    values = 10.0 * np.sin(2.0 * np.pi * time) + 0.5 * random.standard_normal(4000)
+    for length, limited in ((4, True), (3, False)):
+        clipped = values.copy()
+        clipped[1250 : 1250 + length] = clipped[2250] = 14.0
+        found = np.flatnonzero(marked(time, clipped, Flag.SATURATED)).tolist()
+        assert found == ([*range(1250, 1254), 2250] if limited else [])
+
+
+def test_a_value_is_stuck_from_half_a_second_on():
+    random = np.random.default_rng(4)
+    time = np.arange(4000) / 1000.0
+    values = 10.0 * np.sin(2.0 * np.pi * time) + 0.5 * random.standard_normal(4000)
+    for lasting, stuck in ((501, True), (499, False)):
+        held = values.copy()
+        held[1000 : 1000 + lasting] = 2.5
+        found = np.flatnonzero(marked(time, held, Flag.STUCK))
+        assert (found.size == lasting) is stuck
+
+
+def test_a_slack_cable_may_rest_at_zero_and_an_encoder_has_no_limit():
+    random = np.random.default_rng(5)
+    time = np.arange(4000) / 1000.0
+    values = np.maximum(10.0 * np.sin(2.0 * np.pi * 0.5 * time) + 0.2 * random.standard_normal(4000), 0.0)
+    assert not marked(time, values, Flag.STUCK | Flag.SATURATED, kind="tension").any()
+    assert marked(time, values, Flag.STUCK | Flag.SATURATED, kind="strain").any()
+    clipped = np.minimum(values, 9.0)
+    assert marked(time, clipped, Flag.SATURATED, kind="strain")[clipped == 9.0].all()
+    assert not marked(time, clipped, Flag.SATURATED, kind="displacement").any()

@@ -56,7 +56,8 @@ def test_a_log_of_a_moment_is_no_run(bench):
     for column in ("F_top", "F_bottom"):
         bench.columns[column] = bench.columns[column][:20]
     bench.stamps["daq"] = bench.stamps["daq"][:20]
-    assert "s long, expected a run" in refused(bench).problem
+    # 19 steps of 2 ms
+    assert "the log is 0.038 s long, expected a run" in refused(bench).problem
 
 
 def test_a_dead_grating_is_told_and_decides_nothing(bench):

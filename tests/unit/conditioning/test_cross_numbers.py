@@ -146,3 +146,13 @@ def test_two_gratings_off_by_one_factor_are_told_so_and_by_several_not() -> None
 
     assert "all gratings disagree with the tension by one factor: " in said(1.4, 1.42)
     assert "all gratings disagree with the tension: " in said(1.4, 2.4)
+
+
+def test_a_doubt_about_the_inertia_is_told_with_the_gains() -> None:
+    found = gains((grating(1.0), top()), EXACT, WINDOW, STATIC, Inertia(0.0))
+    (plain,) = cross_findings(found, EXACT)
+    (doubted,) = cross_findings(found, EXACT, "no motion was measured")
+    assert doubted.text == f"{plain.text}; no motion was measured"
+    assert plain.text.startswith(
+        "axial stiffness times strain over tension, 3 standard uncertainties: fbg1 1 +/- "
+    )

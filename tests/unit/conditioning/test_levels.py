@@ -9,6 +9,7 @@ import pytest
 
 from tethertest.conditioning.coloured import noise_of
 from tethertest.conditioning.hum import hum_amplitude, with_hum_flagged
+from tethertest.conditioning.jumps import without_jumps
 from tethertest.conditioning.spikes import with_spikes_flagged
 from tethertest.conditioning.tare import Level, rest_level, zeroed
 from tethertest.records.arrays import FloatArray
@@ -244,3 +245,56 @@ def test_samples_that_are_not_known_do_not_dilute_the_variance() -> None:
     residual = 0.3 * np.random.default_rng(9).standard_normal(4000)
     residual[2000:] = 0.0
     assert noise_of(residual, 2000, 0, 0.01, np.inf).variance == pytest.approx(0.09, rel=0.1)
+
+
+def test_an_answer_is_six_standard_deviations_high() -> None:
+    for height, kept in ((0.055, False), (0.065, True)):
+        first, second = np.full(2000, 5.0), np.full(2000, 5.0)
+        first[700] += 1.0
+        second[703] += height
+        channels = [cell(first, rate=1000.0), cell(second, rate=1000.0, name="tension_bottom")]
+        assert bool(np.any(with_spikes_flagged(channels, [0.01, 0.01])[0].flags)) is not kept
+
+
+@pytest.mark.parametrize("place", [2, 3, 1996, 1997])
+def test_a_spike_near_an_end_of_the_record_is_one(place: int) -> None:
+    values = quiet()
+    values[place] += 1.0
+    (found,) = with_spikes_flagged([cell(values, rate=1000.0)])
+    assert np.flatnonzero(found.flags).tolist() == [place]
+
+
+# leaps of the stamps
+
+
+def leapt(values: FloatArray, lost: int, leap: float) -> Channel:
+    """Return a record whose stamps leap at its middle, with so many rows left out there."""
+    half = values.size // 2
+    kept = np.delete(values, slice(half, half + lost))
+    time = np.arange(kept.size) / 500.0 + np.where(np.arange(kept.size) >= half, leap, 0.0)
+    channel = Channel("tension_top", "tension", "N", time, kept, np.zeros(kept.size, dtype=np.uint16))
+    return channel.with_flags(np.arange(kept.size) == half, Flag.GAP)
+
+
+def test_signals_that_go_on_across_a_leap_show_a_jump_and_lost_rows_a_gap() -> None:
+    time = np.arange(10_000) / 500.0
+    moving = np.sin(2 * np.pi * 0.2 * time) + 0.01 * np.random.default_rng(3).standard_normal(time.size)
+    (jumped,), (finding,) = without_jumps([leapt(moving, 0, 0.4)], "daq")
+    assert finding.kind == "clock_jump"
+    assert finding.text.startswith("the clock jumps by +0.4 s at 9.998 s")
+    assert np.diff(jumped.time) == pytest.approx(0.002)
+    assert np.flatnonzero(jumped.flags & Flag.CLOCK_JUMP).tolist() == [5000]
+    assert not np.any(jumped.flags & Flag.GAP)
+    (kept,), (finding,) = without_jumps([leapt(moving, 200, 0.4)], "daq")
+    assert (finding.kind, finding.samples) == ("gap", 200)
+    assert finding.text == "200 rows are missing in 1 gaps, the longest 0.402 s"
+    assert np.max(np.diff(kept.time)) == pytest.approx(0.402)
+
+
+def test_a_signal_at_rest_does_not_tell_and_a_short_leap_is_lost_rows() -> None:
+    still = 0.01 * np.random.default_rng(4).standard_normal(10_000)
+    assert without_jumps([leapt(still, 0, 0.4)], "daq")[1][0].kind == "gap"
+    time = np.arange(10_000) / 500.0
+    moving = np.sin(2 * np.pi * 0.25 * time) + 3e-3 * np.random.default_rng(3).standard_normal(time.size)
+    for leap, kind in ((0.051, "clock_jump"), (0.049, "gap")):
+        assert without_jumps([leapt(moving, 0, leap)], "daq")[1][0].kind == kind

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tethertest.conditioning.plateaus import with_plateaus_flagged
+from tethertest.conditioning.plateaus import plateaus_of, with_plateaus_flagged
 from tethertest.records.channel import Channel, Flag
 
 NOISE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 5.0)  #: [digits]
@@ -136,3 +136,22 @@ def test_a_slack_cable_may_rest_at_zero_and_an_encoder_has_no_limit():
     clipped = np.minimum(values, 9.0)
     assert marked(time, clipped, Flag.SATURATED, kind="strain")[clipped == 9.0].all()
     assert not marked(time, clipped, Flag.SATURATED, kind="displacement").any()
+
+
+@pytest.mark.parametrize("block", [700, 1000, 4000])
+def test_parts_of_a_record_are_marked_as_the_whole_is(block):
+    """Also where a run begins in one part and ends in another, or fills a part."""
+    random = np.random.default_rng(6)
+    time = np.arange(4000) / 1000.0
+    values = 10.0 * np.sin(2.0 * np.pi * time) + 0.5 * random.standard_normal(4000)
+    values[600:2100] = 2.5
+    values[3248:3256] = 14.0
+    channel = Channel("c", "strain", "1", time, values, np.zeros(4000, dtype=np.uint16))
+    whole = with_plateaus_flagged(channel)
+    assert np.flatnonzero(whole.flags & Flag.STUCK).tolist() == list(range(600, 2100))
+    assert np.flatnonzero(whole.flags & Flag.SATURATED).tolist() == list(range(3248, 3256))
+    found = plateaus_of(lambda a, b: (time[a:b], values[a:b]), 4000, block, "strain")
+    for size in (500, 700, 3300):
+        for start in range(0, 4000, size):
+            part = channel.between(time[start], time[min(start + size, 4000) - 1])
+            np.testing.assert_array_equal(found.marked(part, start).flags, whole.flags[start : start + size])

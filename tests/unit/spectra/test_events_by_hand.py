@@ -15,7 +15,7 @@ from tethertest.records.events import Front
 from tethertest.records.lines import Event
 from tethertest.signal.blocks import block_means
 from tethertest.spectra.across import judge_steps
-from tethertest.spectra.arrivals import find_kink
+from tethertest.spectra.arrivals import find_front, find_kink
 from tethertest.spectra.events import find_events
 from tethertest.spectra.portraits import portrait
 from tethertest.spectra.regression import channel_blocks, fit_orders
@@ -271,3 +271,24 @@ def test_a_jump_is_between_two_settings_and_near_the_end_it_is_undecided() -> No
         assert step.verdict is (verdict or StepVerdict.UNDECIDED)
     falling = judge_steps(setting[::-1], amplitude[::-1], np.full(12, 1e-4), 0.01)
     assert falling.steps[0].interval == (0.0, 1.0)
+
+
+def test_a_flank_twice_as_steep_as_its_neighbours_may_be_a_jump() -> None:
+    setting = np.arange(12.0)
+    for height, seen in ((2.0, True), (1.4, False)):
+        amplitude = 1.0 + 0.1 * setting + 0.1 * (height - 1.0) * (setting > 5)
+        steps = judge_steps(setting, amplitude, np.full(12, 1e-4), 0.01).steps
+        assert [(step.interval, step.verdict) for step in steps] == (
+            [((5.0, 6.0), StepVerdict.UNDECIDED)] if seen else []
+        )
+
+
+@pytest.mark.parametrize(("samples", "share"), [(5, 0.5), (10, 0.0)])
+def test_a_front_of_two_early_samples_is_a_jump_between_two_and_of_more_a_ramp(
+    channel: Maker, samples: int, share: float
+) -> None:
+    time = np.arange(400) / 100.0
+    values = 3.0 + np.clip((time - 2.0) * 100.0 / samples, 0.0, 1.0)
+    found = find_front(channel(time, values, at=0.0), Window(0.5, 3.5))
+    assert found is not None
+    assert (found.time - 2.0) * 100.0 == pytest.approx(share, abs=0.05)

@@ -14,7 +14,7 @@ from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Flag, Window
 from tethertest.records.lines import DriveFit, Expectation
-from tethertest.spectra import find_lines, fit_drive
+from tethertest.spectra import find_lines, fit_drive, regression
 from tethertest.spectra.leaks import leakage_floor
 from tethertest.spectra.multitaper import TAPERS, f_value_at, harmonic_test, tapers
 from tethertest.spectra.regression import (
@@ -142,6 +142,23 @@ def test_white_noise_gives_the_error_of_least_squares(
         pair = fit_orders(blocks, 0.25, (ONE, TWO), 0.0).sinusoids.pair(0)
         assert found[ONE].value ** 2 + found[ONE].standard_error ** 2 == pytest.approx(float(pair @ pair))
     assert np.mean(errors) == pytest.approx(0.1 * np.sqrt(2.0 / time.size), rel=0.08)
+
+
+def test_the_interval_knows_how_few_degrees_the_noise_has_and_what_stands_next_to_the_line(
+    channel: Maker, window: Window, time: FloatArray, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    noise = 0.1 * np.random.default_rng(35).standard_normal(time.size)
+    blocks = channel_blocks(channel(time, cosine(time, 0.25) + noise), window, 0.25, 50.0)
+    fit = fit_orders(blocks, 0.25, (ONE, TWO), 0.0)
+    plain = order_amplitudes(fit, (ONE,))[ONE]
+    raw = float(np.hypot(*fit.sinusoids.pair(0)))
+    expected = amplitude_interval(raw, plain.standard_error**2, plain.freedom)
+    assert plain.interval == pytest.approx(expected, rel=1e-9)
+    assert expected[1] - expected[0] > 1.001 * 2.0 * 1.959964 * plain.standard_error
+    monkeypatch.setattr(regression, "believed_excess", lambda noise, frequency: 4.0)
+    beside = order_amplitudes(fit, (ONE,))[ONE]
+    assert beside.standard_error == pytest.approx(2.0 * plain.standard_error)
+    assert beside.p_value == plain.p_value
 
 
 def test_flagged_stretches_cost_what_they_take_of_the_record(

@@ -93,8 +93,8 @@ def mutant(root: Path, package: str, path: Path, changed: str) -> Mutant:
     old, new = path.read_text(encoding="utf-8").splitlines(), changed.splitlines()
     blocks = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
     parts = [(first, last, begin, end) for tag, first, last, begin, end in blocks if tag != "equal"]
-    before = " ".join(line.strip() for first, last, _, _ in parts for line in old[first:last])
-    after = " ".join(line.strip() for _, _, begin, end in parts for line in new[begin:end])
+    before = " ".join(line.strip() for first, last, _, _ in parts for line in old[first:last]).strip()
+    after = " ".join(line.strip() for _, _, begin, end in parts for line in new[begin:end]).strip()
     line = parts[0][0] + 1 if parts else 1
     return Mutant(package, path.relative_to(root), line, before, after, changed)
 

@@ -24,8 +24,10 @@ from tethertest.store import is_store, write_store
 
 #: name of a run's store in its folder of reports
 STORE_NAME = "run.h5"
-#: a text log takes some six times its size in memory while it is read and conditioned [bytes]
-LARGEST_WHOLE = 256_000_000
+#: what `inspect` and `ingest` may take of memory above the program itself [bytes]
+MEMORY = 1_000_000_000
+#: a text log of short numbers is twice its size as arrays, and conditioning takes 2.5 times those [bytes]
+LARGEST_WHOLE = MEMORY // 5
 #: logs of numbers shrink to about a part of this in gzip and zip, known by their first bytes
 UNPACKED, _PACKED = 5, (b"\x1f\x8b", b"PK")
 

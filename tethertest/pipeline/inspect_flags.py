@@ -30,16 +30,18 @@ def shown_flags(log: RawLog) -> tuple[dict[str, dict[str, int]], list[str]]:
     remarks: list[str] = []
     varied: list[Channel] = []
     for raw in log.channels:
-        values = raw.values[np.isfinite(raw.values)]
-        if values.size < FEWEST_SAMPLES:
+        finite = np.isfinite(raw.values)
+        count = int(np.count_nonzero(finite))
+        if count < FEWEST_SAMPLES:
             continue
-        if not np.any(values != values[0]):
-            flags[raw.name] = {"stuck": int(values.size), "saturated": 0, "spike": 0}
-            remarks.append(f"channel {raw.name!r}: constant, all values are {values[0]:.6g}")
+        first = float(raw.values[np.argmax(finite)])
+        if not np.any((raw.values != first) & finite):
+            flags[raw.name] = {"stuck": count, "saturated": 0, "spike": 0}
+            remarks.append(f"channel {raw.name!r}: constant, all values are {first:.6g}")
             continue
         _, coded = without_codes(raw.values)
         remarks += [f"channel {raw.name!r}: {text}" for text in coded]
-        known = np.where(np.isfinite(raw.values), raw.values, np.nan)
+        known = raw.values if finite.all() else np.where(finite, raw.values, np.nan)
         channel = si_channel(replace(raw, values=known), log)[0]
         if channel.time.size >= FEWEST_SAMPLES and np.isfinite(channel.values).any():
             varied.append(channel)

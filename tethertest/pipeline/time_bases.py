@@ -13,6 +13,7 @@ from tethertest.pipeline.bare_log import JITTER
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import RawLog
 from tethertest.records.inspected import FewStamps, TimeBase
+from tethertest.signal.passes import blocks_of
 
 #: steps off the usual one in more than this share of the rows are the logger's habit, not single gaps
 HABIT: Final = 0.05
@@ -41,7 +42,8 @@ def time_bases(log: RawLog) -> tuple[TimeBase | FewStamps, ...]:
 
 
 def _base(names: tuple[str, ...], stamps: FloatArray) -> TimeBase | FewStamps:
-    time = stamps[np.isfinite(stamps)]
+    known = np.isfinite(stamps)
+    time = stamps if known.all() else stamps[known]
     missing = int(stamps.size - time.size)
     first, last = (float(time.min()), float(time.max())) if time.size else (None, None)
     if first is None or last is None or time.size < 2:
@@ -50,7 +52,7 @@ def _base(names: tuple[str, ...], stamps: FloatArray) -> TimeBase | FewStamps:
     seen = steps_of(time)
     # a row in the wrong place is no hole in the record
     ordered = np.unique(time) if seen.backward.any() else time
-    holes = steps_of(ordered).gap
+    holes = seen.gap if ordered is time else steps_of(ordered).gap
     step = np.diff(ordered)
     repeats = seen.duplicate & ~seen.backward
     return TimeBase(
@@ -67,7 +69,7 @@ def _base(names: tuple[str, ...], stamps: FloatArray) -> TimeBase | FewStamps:
             "backward_time": int(np.count_nonzero(seen.backward)),
             "gap": int(np.count_nonzero(holes)),
         },
-        text=_sentence(time, ordered, seen, holes, repeats, missing),
+        text=_sentence(time, ordered, step, seen, holes, repeats, missing),
         shortest_step=float(step.min()),
         longest_step=float(step.max()),
         mean_rate=(time.size - 1) / (last - first) if last > first else None,
@@ -81,15 +83,24 @@ def _few(count: int) -> str:
 
 def _uneven(step: FloatArray, usual: float) -> BoolArray:
     """Return which steps are not the usual one; stamps that repeat are told by themselves."""
-    return np.asarray((np.abs(step - usual) > JITTER * usual) & (step > 0.0), dtype=bool)
+    uneven = np.zeros(step.size, dtype=bool)
+    for start, stop in blocks_of(step.size):
+        part = step[start:stop]
+        uneven[start:stop] = (np.abs(part - usual) > JITTER * usual) & (part > 0.0)
+    return uneven
 
 
 def _sentence(
-    time: FloatArray, ordered: FloatArray, seen: Steps, holes: BoolArray, repeats: BoolArray, missing: int
+    time: FloatArray,
+    ordered: FloatArray,
+    step: FloatArray,
+    seen: Steps,
+    holes: BoolArray,
+    repeats: BoolArray,
+    missing: int,
 ) -> str:
     if seen.median == 0.0:
         return "no stamp is later than the one before it"
-    step = np.diff(ordered)
     uneven = _uneven(step, seen.median)
     count, share = int(np.count_nonzero(uneven)), float(np.mean(uneven))
     said = [f"{time.size} stamps from {ordered[0]:.6g} to {ordered[-1]:.6g} s, every {_seconds(seen.step)}"]

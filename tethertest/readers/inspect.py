@@ -7,8 +7,11 @@ import math
 import numpy as np
 
 from tethertest.errors import QuantityError
+from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Flag, RawChannel, RawLog
 from tethertest.records.inspected import ChannelSeen
+from tethertest.signal.passes import blocks_of
+from tethertest.signal.series import some_steps
 from tethertest.units import Kind, UnitScale, channel_scale
 
 
@@ -33,11 +36,10 @@ def described_channels(log: RawLog) -> tuple[list[ChannelSeen], list[str]]:
 
 def _channel(channel: RawChannel, remarks: list[str]) -> ChannelSeen:
     scale = _scale(channel, remarks)
-    with np.errstate(over="ignore", invalid="ignore"):  # what is then infinite is told as unknown
-        values = channel.values[np.isfinite(channel.values)] * scale.factor + scale.offset
-        mean = float(values.mean()) if values.size else math.nan
-    time = channel.time[np.isfinite(channel.time)]  # a row may have no stamp
-    steps = np.diff(time)
+    finite, low, mean, high = _span(channel.values, scale)
+    known = np.isfinite(channel.time)
+    time = channel.time if known.all() else channel.time[known]  # a row may have no stamp
+    steps = some_steps(time) if time.size > 1 else np.zeros(0)
     forward = steps[steps > 0]
     rate = 1.0 / float(np.median(forward)) if forward.size else math.nan
     return ChannelSeen(
@@ -48,11 +50,24 @@ def _channel(channel: RawChannel, remarks: list[str]) -> ChannelSeen:
         n=channel.values.size,
         rate=_known(rate),
         duration=float(time.max() - time.min()) if time.size else 0.0,
-        minimum=_known(float(values.min())) if values.size else None,
+        minimum=_known(low),
         mean=_known(mean),
-        maximum=_known(float(values.max())) if values.size else None,
-        flags={"missing": channel.values.size - values.size, **_told(channel)},
+        maximum=_known(high),
+        flags={"missing": channel.values.size - finite, **_told(channel)},
     )
+
+
+def _span(values: FloatArray, scale: UnitScale) -> tuple[int, float, float, float]:
+    """Return how many values are finite, and the smallest, the mean and the largest of them in SI."""
+    count, low, total, high = 0, math.inf, 0.0, -math.inf
+    with np.errstate(over="ignore", invalid="ignore"):  # what is then infinite is told as unknown
+        for start, stop in blocks_of(values.size):
+            part = values[start:stop]
+            part = part[np.isfinite(part)] * scale.factor + scale.offset
+            if part.size:
+                count, total = count + part.size, total + float(np.sum(part))
+                low, high = min(low, float(part.min())), max(high, float(part.max()))
+    return (count, low, total / count, high) if count else (0, math.nan, math.nan, math.nan)
 
 
 def _known(number: float) -> float | None:

@@ -136,8 +136,12 @@ def fit_sinusoids(
     ValueError
         More coefficients than blocks with samples, or frequencies that these samples do not tell apart.
     """
-    pairs = [sinusoid_pair(blocks, float(frequency), origin) for frequency in frequencies]
-    design = np.column_stack([trend_columns(blocks, degree), *pairs])
+    trend = trend_columns(blocks, degree)
+    design = np.empty((blocks.time.size, degree + 1 + 2 * len(frequencies)))
+    design[:, : degree + 1] = trend
+    for number, frequency in enumerate(frequencies):
+        first = degree + 1 + 2 * number
+        design[:, first : first + 2] = sinusoid_pair(blocks, float(frequency), origin)
     if np.count_nonzero(blocks.weights) <= design.shape[1]:
         message = f"{np.count_nonzero(blocks.weights)} blocks for {design.shape[1]} coefficients"
         raise ValueError(message)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from tethertest.signal.filters import filled_reader, moving_mean
 from tethertest.signal.noise import white_noise, white_noise_of
+from tethertest.signal.passes import blocks_of
 from tethertest.signal.series import Booleans, Floats, Series
 from tethertest.signal.thinning import evenly, means_of
 
@@ -49,6 +50,8 @@ SETTLED_SIGMAS = 4.0
 DETECTABLE = 8.0
 #: the frequency is first fitted to the strong part of the record, then to the settled one
 PASSES = 3
+#: medians that are taken at once: each needs the values around it side by side
+SPREAD = 1 << 13
 #: what is shorter than this many cycles is no steady window
 FEWEST_CYCLES = 3
 #: where means over two cycles never settle, cycles repeat each other within these shares of the amplitude,
@@ -261,7 +264,9 @@ def _moving_median(values: Floats, length: int) -> Floats:
     """Return centred medians over about `length` values, the ends continued with the nearest value."""
     half = length // 2
     padded = np.pad(values, half, mode="edge")
-    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1), axis=1))
+    spread = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1)
+    rows = blocks_of(values.size, SPREAD)
+    return np.concatenate([np.median(spread[start:stop], axis=1) for start, stop in rows])
 
 
 def _moving(time: Floats, away: Booleans) -> Booleans:

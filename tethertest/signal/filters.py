@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tethertest.errors import DataError
+from tethertest.signal.passes import overlapped
 from tethertest.signal.series import Booleans, Floats, Series
 
 Number = TypeVar("Number", np.float64, np.complex128)
@@ -19,6 +20,8 @@ ORDER = 2
 NYQUIST_FRACTION = 0.45
 #: a hole in the samples longer than this many sampling intervals is a hole in the resampled series too
 HOLE_INTERVALS = 1.5
+#: periods of its cut-off after which a low-pass has forgotten a sample, to 1e-15 of it
+REACH = 12.0
 
 
 def filled(series: Series) -> Floats:
@@ -129,12 +132,17 @@ def low_passed(values: Floats, rate: float, cutoff: float) -> Floats:
     single = cutoff / (np.sqrt(2.0) - 1.0) ** (0.5 / ORDER)
     numerator, denominator = _butterworth(min(single, NYQUIST_FRACTION * rate) / (0.5 * rate))
     padding = min(values.size - 1, round(3.0 * rate / cutoff))
-    before = 2.0 * values[0] - values[padding:0:-1]
-    after = 2.0 * values[-1] - values[-2 : -padding - 2 : -1]
-    padded = np.concatenate((before, values, after))
-    backwards = _run(numerator, denominator, padded)[::-1]
-    both = _run(numerator, denominator, backwards)[::-1]
-    return both[padding : padding + values.size]
+
+    def filtered(start: int, stop: int) -> Floats:
+        part = values[start:stop]
+        before = 2.0 * part[0] - part[padding:0:-1]
+        after = 2.0 * part[-1] - part[-2 : -padding - 2 : -1]
+        padded = np.concatenate((before, part, after))
+        backwards = _run(numerator, denominator, padded)[::-1]
+        both = _run(numerator, denominator, backwards)[::-1]
+        return both[padding : padding + part.size]
+
+    return overlapped(filtered, values.size, round(REACH * rate / cutoff))
 
 
 def _butterworth(cutoff: float) -> tuple[Floats, Floats]:
@@ -190,10 +198,14 @@ def without_line(time: Floats, values: Floats, frequency: float, span: float) ->
         Time over which its amplitude is measured [s]; what is farther than ``1/span`` [Hz] from the line
         stays.
     """
-    carrier = np.exp(2j * np.pi * frequency * time)
     samples = span * (time.size - 1) / (time[-1] - time[0])
-    amplitude = 2.0 * moving_mean(values * np.conj(carrier), samples)
-    return np.asarray(values - (amplitude * carrier).real, dtype=np.float64)
+
+    def cleared(start: int, stop: int) -> Floats:
+        carrier = np.exp(2j * np.pi * frequency * time[start:stop])
+        amplitude = 2.0 * moving_mean(values[start:stop] * np.conj(carrier), samples)
+        return np.asarray(values[start:stop] - (amplitude * carrier).real, dtype=np.float64)
+
+    return overlapped(cleared, values.size, int(samples) + 1)
 
 
 def resampled(series: Series, times: Floats) -> Floats:

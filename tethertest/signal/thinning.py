@@ -8,12 +8,10 @@ from typing import Final
 import numpy as np
 
 from tethertest.signal.filters import filled, filled_reader
-from tethertest.signal.passes import BLOCK, blocks_of
+from tethertest.signal.passes import BLOCK, LONGEST, blocks_of
 from tethertest.signal.series import Floats, Series
 
-#: a record of more samples is thinned before whole transforms of it are made
-LONGEST: Final = 1 << 19
-#: and keeps at least so many samples in a period of what is looked for
+#: a long record keeps at least so many samples in a period of what is looked for
 PER_PERIOD: Final = 50.0
 
 

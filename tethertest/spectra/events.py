@@ -11,6 +11,7 @@ from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel
 from tethertest.records.lines import Event, EventKind
 from tethertest.signal.filters import filled, low_passed
+from tethertest.signal.passes import blocks_of
 
 #: standard uncertainty of a load cell's zero where the caller knows none [N]: tare and temperature drift of a
 #: cell for 100 N over a run
@@ -130,10 +131,15 @@ def _slack_intervals(
 
 def _hysteresis(enters: BoolArray, leaves: BoolArray) -> BoolArray:
     """Return the state that starts where `enters` and ends where `leaves`, and stays between."""
-    decided = np.where(enters, 1, np.where(leaves, 0, -1))
-    decided[0] = max(int(decided[0]), 0)
-    latest = np.maximum.accumulate(np.where(decided >= 0, np.arange(decided.size), 0))
-    state: BoolArray = decided[latest] == 1
+    state = np.empty(enters.size, dtype=bool)
+    before = False
+    for start, stop in blocks_of(enters.size):
+        entered = enters[start:stop]
+        decided = np.flatnonzero(entered | leaves[start:stop])
+        latest = np.searchsorted(decided, np.arange(stop - start), "right") - 1
+        known = np.concatenate(([before], entered[decided]))
+        state[start:stop] = known[latest + 1]
+        before = bool(state[stop - 1])
     return state
 
 

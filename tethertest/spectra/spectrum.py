@@ -9,7 +9,8 @@ import numpy as np
 from tethertest.errors import DataError
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import Channel, Window
-from tethertest.signal.filters import filled
+from tethertest.signal.filters import filled_reader
+from tethertest.signal.passes import LONGEST
 
 #: a spectrum of fewer samples shows nothing
 FEWEST_SAMPLES = 8
@@ -39,7 +40,8 @@ def spectrum(channel: Channel, window: Window) -> Spectrum:
     Returns
     -------
     Spectrum
-        At the frequencies of the plain transform, without zero-padding.
+        At the frequencies of the plain transform, without zero-padding. A window of more than `LONGEST`
+        samples is cut into equal spans, whose power is averaged.
 
     Raises
     ------
@@ -52,10 +54,16 @@ def spectrum(channel: Channel, window: Window) -> Spectrum:
             f"channel {channel.name!r}: {part.time.size} samples in the window, expected {FEWEST_SAMPLES}"
         )
         raise DataError(message, "choose a longer window")
-    values = filled(part)
-    count = values.size
-    taper = np.sin(np.pi * (np.arange(count) + 0.5) / count) ** 2
-    transform = np.fft.rfft(taper * (values - values.mean()))
-    amplitude = 2.0 * np.abs(transform) / taper.sum()
+    read = filled_reader(part)
+    spans = -(-part.time.size // LONGEST)
+    count = part.time.size // spans
+    found = [_amplitude(read(start, start + count)) for start in range(0, spans * count, count)]
+    amplitude = found[0] if spans == 1 else np.sqrt(np.mean(np.square(found), axis=0))
     frequency = np.fft.rfftfreq(count, 1.0 / part.rate)
     return Spectrum(channel.name, channel.unit, frozen(frequency), frozen(amplitude), part.rate / count)
+
+
+def _amplitude(values: FloatArray) -> FloatArray:
+    taper = np.sin(np.pi * (np.arange(values.size) + 0.5) / values.size) ** 2
+    transform = np.fft.rfft(taper * (values - values.mean()))
+    return np.asarray(2.0 * np.abs(transform) / taper.sum())

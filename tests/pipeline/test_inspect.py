@@ -17,7 +17,8 @@ import pytest
 
 from tethertest.cli import main
 from tethertest.errors import TethertestError
-from tethertest.pipeline.inspect import described, inspect_path, inspected
+from tethertest.pipeline.describe_log import described
+from tethertest.pipeline.inspect import inspect_path, inspected
 from tethertest.readers import read_log
 from tethertest.readers.config.structure import structure
 from tethertest.records.run import Log

@@ -14,9 +14,10 @@ from tethertest.pipeline.analysis_options import Options
 from tethertest.pipeline.evaluation import Evaluation, open_run
 from tethertest.pipeline.long_runs.columns import Sizes
 from tethertest.pipeline.long_runs.ingest import Progress, Sources, ingest_long
-from tethertest.pipeline.long_runs.pieces import pieces_of
+from tethertest.pipeline.memory import LARGEST_WHOLE, is_long
 from tethertest.pipeline.stored import store_header
 from tethertest.readers import read_log
+from tethertest.readers.streaming import stream_log
 from tethertest.records.channel import Finding, Severity
 from tethertest.records.described import Doc
 from tethertest.records.run import Run
@@ -24,12 +25,6 @@ from tethertest.store import is_store, write_store
 
 #: name of a run's store in its folder of reports
 STORE_NAME = "run.h5"
-#: what `inspect` and `ingest` may take of memory above the program itself [bytes]
-MEMORY = 1_000_000_000
-#: a text log of short numbers is twice its size as arrays, and conditioning takes 2.5 times those [bytes]
-LARGEST_WHOLE = MEMORY // 5
-#: logs of numbers shrink to about a part of this in gzip and zip, known by their first bytes
-UNPACKED, _PACKED = 5, (b"\x1f\x8b", b"PK")
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,22 +87,15 @@ def _ingested(
 ) -> tuple[dict[str, int], Sequence[Finding]]:
     """Write the store, and return samples by channel and the findings."""
     run = evaluation.run
-    long = {log.key: run.folder / log.file for log in run.file.log if _size(run.folder / log.file) > largest}
+    long = {log.key: run.folder / log.file for log in run.file.log if is_long(run.folder / log.file, largest)}
     if long:
         whole = {log.key: read_log(run.folder / log.file, log) for log in run.file.log if log.key not in long}
-        pieces = {log.key: pieces_of(long[log.key], log) for log in run.file.log if log.key in long}
+        pieces = {log.key: stream_log(long[log.key], log) for log in run.file.log if log.key in long}
         sources = Sources(whole, pieces)
         return ingest_long(run, sources, target, partial(store_header, run), progress, Sizes())
     measured = evaluation.conditioned
     write_store(target, store_header(run, evaluation.logs), measured)
     return {channel.name: channel.time.size for channel in measured.channels}, measured.findings
-
-
-def _size(path: Path) -> int:
-    """Return the bytes that a log has when it is unpacked, about."""
-    with path.open("rb") as file:
-        packed = file.read(2) in _PACKED
-    return path.stat().st_size * (UNPACKED if packed else 1)
 
 
 def check_target(target: Path, run: Run) -> None:

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from tethertest.errors import TethertestError
-from tethertest.pipeline.inspect_flags import shown_flags
-from tethertest.pipeline.log_entry import entry_text
-from tethertest.pipeline.read_bare import check_no_pipe, read_bare, settings_of_a_run
+from tethertest.pipeline.describe_log import described
+from tethertest.pipeline.describe_parts import ROWS, described_in_parts
+from tethertest.pipeline.memory import is_long
+from tethertest.pipeline.read_bare import check_no_pipe, read_bare, settings_of_a_run, stream_bare
 from tethertest.pipeline.store_summary import describe_store
-from tethertest.pipeline.time_bases import time_bases
 from tethertest.readers import load_run, read_log
 from tethertest.readers.config.given import given_settings, settings_toml
-from tethertest.readers.inspect import described_channels
 from tethertest.readers.registry import identified
-from tethertest.records.channel import RawLog
-from tethertest.records.inspected import ChannelSeen, FewStamps, Inspected, LogSeen, Refusal, RunSeen
+from tethertest.readers.streaming import stream_log
+from tethertest.records.inspected import Inspected, LogSeen, Refusal, RunSeen
 from tethertest.records.run import DEFAULT, Log
 from tethertest.store import is_store
 
@@ -51,6 +48,8 @@ def inspect_path(path: Path, rigs: Path | None = None, words: Sequence[str] = ()
     if is_store(path):
         return describe_store(path)
     if not path.is_dir():
+        if path.is_file() and is_long(path):
+            return described_in_parts(stream_bare(path, words, ROWS), settings_toml(words))
         return described(read_bare(path, words), settings_toml(words))
     if not (path / "run.toml").is_file():
         message = "the folder has no run.toml"
@@ -108,49 +107,10 @@ def refusal(path: Path, error: TethertestError, settings: Log = DEFAULT) -> Refu
     )
 
 
-def described(log: RawLog, settings: Mapping[str, Any] | None = None) -> LogSeen:
-    """Describe a log as read: what it holds, what its stamps are like, and what its values show.
-
-    Parameters
-    ----------
-    log : RawLog
-        As read.
-    settings : mapping, optional
-        What was given to read a bare log, as TOML has it; absent for a log that run.toml has.
-    """
-    channels, of_units = described_channels(log)
-    bases = time_bases(log)
-    shown, of_values = shown_flags(log)
-    base_of = {name: base for base in bases for name in base.channels}
-    return LogSeen(
-        path=str(log.path),
-        refused=False,
-        format=log.format,
-        reason=log.reason,
-        encoding=log.encoding,
-        start=None if log.start is None else log.start.isoformat(),
-        decimal=log.decimal,
-        separator=log.separator,
-        date_order=log.date_order,
-        header_line=log.header_line,
-        rate=log.rate,
-        sha256=log.sha256,
-        channels=tuple(_seen(channel, base_of[channel.name], shown) for channel in channels),
-        time_bases=bases,
-        remarks=(*log.remarks, *of_units, *of_values),
-        entry=None if settings is None else entry_text(log, settings),
-    )
-
-
-def _seen(channel: ChannelSeen, base: FewStamps, shown: Mapping[str, dict[str, int]]) -> ChannelSeen:
-    """Return a channel with what its stamps and its values show."""
-    flags = {**channel.flags, **base.flags, **shown.get(channel.name, {})}
-    rate = channel.rate if base.quantum is None or base.step is None else 1.0 / base.step
-    return replace(channel, flags=flags, rate=rate)
-
-
 def _log_of_run(path: Path, log: Log) -> LogSeen | Refusal:
     try:
+        if path.is_file() and is_long(path):
+            return described_in_parts(stream_log(path, log, rows=ROWS))
         return described(read_log(path, log))
     except TethertestError as error:
         return refusal(path, error, log)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -12,6 +12,7 @@ from tethertest.errors import FileFormatError, TethertestError
 from tethertest.readers import read_log
 from tethertest.readers.config.given import given_settings
 from tethertest.readers.config.structure import field_types
+from tethertest.readers.streaming import stream_log
 from tethertest.records.channel import RawLog
 from tethertest.records.run import Log
 
@@ -38,16 +39,33 @@ def read_bare(path: Path, words: Sequence[str] = ()) -> RawLog:
     TethertestError
         A setting is wrong, or the log cannot be read; what a setting would mend names ``--set``.
     """
+    (log,) = _bare(path, words, lambda settings: [read_log(path, settings)])
+    return log
+
+
+def stream_bare(path: Path, words: Sequence[str], rows: int) -> Iterator[RawLog]:
+    """Yield a log without a run in consecutive parts of so many rows.
+
+    Raises
+    ------
+    TethertestError
+        As `read_bare`.
+    """
+    return _bare(path, words, lambda settings: stream_log(path, settings, rows=rows))
+
+
+def _bare(
+    path: Path, words: Sequence[str], read: Callable[[Log | None], Iterable[RawLog]]
+) -> Iterator[RawLog]:
     settings = given_settings(path, words)
     check_no_pipe(path)
     try:
-        log = read_log(path, settings)
+        for log in read(settings):
+            remarks = tuple(remark.replace(_HERE, f"in {SET}") for remark in log.remarks)
+            told = replace(log, remarks=remarks, reason=log.reason.replace(_RUN_FILE, SET))
+            yield told if words else log
     except FileFormatError as error:
         raise bare_error(error, given=bool(words)) from error
-    if not words:
-        return log
-    remarks = tuple(remark.replace(_HERE, f"in {SET}") for remark in log.remarks)
-    return replace(log, remarks=remarks, reason=log.reason.replace(_RUN_FILE, SET))
 
 
 def bare_error(error: FileFormatError, *, given: bool) -> TethertestError:

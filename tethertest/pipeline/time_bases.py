@@ -103,24 +103,26 @@ def _sentence(
         return "no stamp is later than the one before it"
     uneven = _uneven(step, seen.median)
     count, share = int(np.count_nonzero(uneven)), float(np.mean(uneven))
-    said = [f"{time.size} stamps from {ordered[0]:.6g} to {ordered[-1]:.6g} s, every {_seconds(seen.step)}"]
+    said = [
+        f"{time.size} stamps from {ordered[0]:.6g} to {ordered[-1]:.6g} s, every {seconds_text(seen.step)}"
+    ]
     if seen.quantised is not None:
-        said.append(f"stamps cut to {_seconds(seen.quantised.quantum)}")
+        said.append(f"stamps cut to {seconds_text(seen.quantised.quantum)}")
         if seen.quantised.pattern:
             said[-1] += f" ({look_the_same(seen.quantised)})"
     elif share > HABIT:
         rate = (time.size - 1) / float(time.max() - time.min())
         off = step[uneven]
         words = f"jittered: {count} of {step.size} steps ({100 * share:.3g} %) are not that, but "
-        words += " to ".join(dict.fromkeys((_seconds(float(off.min())), _seconds(float(off.max())))))
+        words += " to ".join(dict.fromkeys((seconds_text(float(off.min())), seconds_text(float(off.max())))))
         if np.all(np.abs(off / seen.median - np.round(off / seen.median)) < MULTIPLE):
             words += ", all of them whole multiples of it"
         said.append(f"{words}; the mean rate is {rate:.4g} Hz")
     elif seen.jitter > JITTER_FRACTION * seen.median:
-        said.append(f"jittered by {_seconds(seen.jitter)} (standard deviation)")
+        said.append(f"jittered by {seconds_text(seen.jitter)} (standard deviation)")
     if holes.any() and (seen.quantised is not None or len(said) == 1):
         long = int(np.argmax(step))
-        longest = f"the longest {_seconds(float(step[long]))} after {ordered[long]:.6g} s"
+        longest = f"the longest {seconds_text(float(step[long]))} after {ordered[long]:.6g} s"
         said.append(f"{_number(holes, 'gap')}, {longest}")
     if repeats.any():
         said.append(f"{_number(repeats, 'stamp')} repeated, at {_places(time[repeats])}")
@@ -141,7 +143,8 @@ def _places(times: FloatArray) -> str:
     return ", ".join(f"{time:.6g} s" for time in times[:PLACES]) + more
 
 
-def _seconds(value: float) -> str:
+def seconds_text(value: float) -> str:
+    """Return a time in s, ms or us."""
     size = abs(value)
     if size == 0.0 or size >= 1.0:
         return f"{value:.6g} s"

@@ -108,5 +108,5 @@ def _sensors(piece: RawLog, entry: Log, run: Run) -> tuple[tuple[Pairing, ...], 
 
 def _refused(piece: RawLog, why: str) -> DataError:
     message = f"the log is larger than is read at once, and {why}"
-    remedy = "log or export it in parts of less than 256 MB, or as files of one instrument each"
+    remedy = "log or export it in parts of less than 200 MB, or as files of one instrument each"
     return DataError(message, remedy, path=piece.path)

@@ -16,6 +16,7 @@ from tethertest.conditioning.starts import start_after
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, Flag, RawLog, Severity, Source
 from tethertest.records.run import Log, Run
+from tethertest.signal.passes import blocks_of
 
 Timed = TypeVar("Timed")
 
@@ -77,9 +78,18 @@ def with_same_times(items: Sequence[Timed], time_of: Callable[[Timed], FloatArra
     left = list(items)
     while left:
         time = time_of(left[0])
-        same = [time_of(item) is time or np.array_equal(time_of(item), time, equal_nan=True) for item in left]
+        same = [_same(time_of(item), time) for item in left]
         yield [item for item, shared in zip(left, same, strict=True) if shared]
         left = [item for item, shared in zip(left, same, strict=True) if not shared]
+
+
+def _same(one: FloatArray, other: FloatArray) -> bool:
+    if one is other or one.shape != other.shape:
+        return one is other
+    return all(
+        np.array_equal(one[start:stop], other[start:stop], equal_nan=True)
+        for start, stop in blocks_of(one.size)
+    )
 
 
 def _column(pairing: Pairing, stamps: Stamps, raw: RawLog, entry: Log) -> Channel:

@@ -39,8 +39,7 @@ def shown_flags(log: RawLog) -> tuple[dict[str, dict[str, int]], list[str]]:
             flags[raw.name] = {"stuck": count, "saturated": 0, "spike": 0}
             remarks.append(f"channel {raw.name!r}: constant, all values are {first:.6g}")
             continue
-        _, coded = without_codes(raw.values)
-        remarks += [f"channel {raw.name!r}: {text}" for text in coded]
+        remarks += [f"channel {raw.name!r}: {text}" for text in without_codes(raw.values)[1]]
         known = raw.values if finite.all() else np.where(finite, raw.values, np.nan)
         channel = si_channel(replace(raw, values=known), log)[0]
         if channel.time.size >= FEWEST_SAMPLES and np.isfinite(channel.values).any():

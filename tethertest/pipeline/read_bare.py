@@ -54,9 +54,7 @@ def stream_bare(path: Path, words: Sequence[str], rows: int) -> Iterator[RawLog]
     return _bare(path, words, lambda settings: stream_log(path, settings, rows=rows))
 
 
-def _bare(
-    path: Path, words: Sequence[str], read: Callable[[Log | None], Iterable[RawLog]]
-) -> Iterator[RawLog]:
+def _bare(path: Path, words: Sequence[str], read: Callable[[Log], Iterable[RawLog]]) -> Iterator[RawLog]:
     settings = given_settings(path, words)
     check_no_pipe(path)
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,6 +18,8 @@ from tethertest.solver import solve
 
 #: one number of several, such as ``drag_area[1]``
 _ITEM = re.compile(r"(\w+)\[(\d+)\]")
+#: replays at a time; transforms and marches let each other run, and each holds a few dozen megabytes
+_WORKERS = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,13 +53,18 @@ def variations(
         "linear" or "nonlinear", as the run's own replay.
     """
     names = [name for name in run.rig.uncertainty if _belongs(name, run.file.platform.mode)]
-    return tuple(
-        Variation(name, uncertainty, _replay(run, rig, motion, measured, cells, fidelity))
-        for name, uncertainty, rig in (
-            ("nominal", 0.0, run.rig),
-            *((n, run.rig.uncertainty[n], moved(run.rig, n)) for n in names),
-        )
-    )
+
+    def replayed(rig: Rig) -> tuple[Channel, ...]:
+        return _replay(run, rig, motion, measured, cells, fidelity)
+
+    nominal = Variation("nominal", 0.0, replayed(run.rig))  # first and alone: the others share what it loads
+    with ThreadPoolExecutor(_WORKERS) as workers:
+        found = workers.map(lambda name: replayed(moved(run.rig, name)), names)
+        others = [
+            Variation(name, run.rig.uncertainty[name], channels)
+            for name, channels in zip(names, found, strict=True)
+        ]
+    return (nominal, *others)
 
 
 def moved(rig: Rig, name: str) -> Rig:

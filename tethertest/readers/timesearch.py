@@ -266,7 +266,7 @@ def _only(table: TableHead, places: list[int]) -> int:
 def _refuse_second_clock(table: TableHead, chosen: TimeChoice) -> None:
     """Refuse a second column that counts time in other steps: some channels may belong to it."""
     (place, *_), (main, *_) = chosen.columns, [table.columns[place] for place in chosen.columns]
-    if main.kind != "number":
+    if main.kind != "number" or not main.steps().size:
         return
     usual = float(np.median(main.steps())) * _seconds_of(main)
     for other, column in enumerate(table.columns):

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import math
 from functools import cache
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 from pydantic import TypeAdapter
+from pydantic.json_schema import GenerateJsonSchema
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+class _WithDocstrings(GenerateJsonSchema):
+    """Schemas whose objects are described by their records' docstrings, which older pydantic leaves out."""
+
+    def dataclass_schema(self, schema: Any) -> dict[str, Any]:
+        return {**super().dataclass_schema(schema), "description": inspect.getdoc(schema["cls"]) or ""}
 
 
 def as_json(record: Any) -> dict[str, Any]:
@@ -40,7 +49,7 @@ def file_schema(record: type, title: str) -> dict[str, Any]:
 
     Unknown keys are not allowed anywhere, and TOML has no null.
     """
-    schema = _tidied(_adapter(record).json_schema(mode="validation"), in_files=True)
+    schema = _tidied(_schema(record, "validation"), in_files=True)
     return {"$schema": DIALECT, **schema, "title": title}
 
 
@@ -55,10 +64,14 @@ def printed_schema(record: Any, title: str, may_lack: tuple[str, ...] = ()) -> d
     may_lack : tuple of str
         Keys of the object that are not always there; all others are.
     """
-    schema = _tidied(_adapter(record).json_schema(mode="serialization"), in_files=False)
+    schema = _tidied(_schema(record, "serialization"), in_files=False)
     if may_lack:
         schema["required"] = [key for key in schema["required"] if key not in may_lack]
     return {"$schema": DIALECT, **schema, "title": title}
+
+
+def _schema(record: Any, mode: Literal["validation", "serialization"]) -> dict[str, Any]:
+    return _adapter(record).json_schema(mode=mode, schema_generator=_WithDocstrings)
 
 
 @cache

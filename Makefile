@@ -4,7 +4,7 @@ BIN := .venv/bin
 RUN ?= datasets/rig3m/run04
 JOBS ?= 2
 
-.PHONY: setup setup-report lock report test verify verify-logs verify-lines verify-rest bench stability mutants lint schema
+.PHONY: setup setup-report lock report test verify verify-logs verify-lines verify-rest bench stability mutants lint schema site
 .DEFAULT_GOAL := report
 
 # One environment that grows: a report needs few packages, tests and checks need more, both from locked files.
@@ -86,6 +86,10 @@ lint: setup  ## style, types, layers
 FILES := run rig prototype scene
 COMMANDS := report analyze across inspect solve scale ingest export new bench
 
-schema: setup  ## write the JSON schemas of the files that people write, and of what commands print
+schema: setup  ## write the JSON schemas of files and of what commands print, and the reference pages
 	for kind in $(FILES); do $(BIN)/tethertest schema $$kind > rigs/schema/$$kind.schema.json; done
 	for kind in $(COMMANDS); do $(BIN)/tethertest schema $$kind > docs/schema/$$kind.schema.json; done
+	$(BIN)/python docs/reference.py
+
+site: setup  ## docs/_build/index.html, of the pages in docs/
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build

@@ -67,7 +67,7 @@ class Platform:
     modes: Annotated[dict[str, PlatformMode], Doc("name of a mode -> its position loop")] = field(
         default_factory=lambda: {"free": PlatformMode()}
     )
-    drag_area: Annotated[tuple[Area, Area], Doc("drag times area, forward and upward")] | None = None
+    drag_area: Annotated[tuple[Area, Area], Doc("Cd times area, forward and upward")] | None = None
     tilt: Annotated[float, SI("rad", "by which the body leans down from level, forward")] = 0.0
 
     def __post_init__(self) -> None:

@@ -83,7 +83,7 @@ class Top:
     lift: Annotated[Force | tuple[Force, ...], Doc("upwards, or its components")] | None = None
     hover_stiffness: Annotated[Stiffness | tuple[Stiffness, ...], Doc("of the position loop")] = 0.0
     hover_damping: Annotated[Damping | tuple[Damping, ...], Doc("of the position loop")] = 0.0
-    drag_area: Annotated[tuple[Area, Area], Doc("drag times area, forward and upward")] | None = None
+    drag_area: Annotated[tuple[Area, Area], Doc("Cd times area, forward and upward")] | None = None
     tilt: Annotated[float, SI("rad", "by which the body leans down from level, forward")] = 0.0
 
     def __post_init__(self) -> None:

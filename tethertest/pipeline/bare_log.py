@@ -204,11 +204,11 @@ def si_channel(raw: RawChannel, log: RawLog) -> tuple[Channel, list[str]]:
     except QuantityError as error:
         scale = UnitScale(Kind.OTHER, raw.unit, 1.0)
         remarks.append(f"channel {raw.name!r}: {error.problem}; its values stay as written")
-    written, coded = without_codes(raw.values)
+    values, coded = without_codes(raw.values)
     remarks += [f"channel {raw.name!r}: {text}; they are left out" for text in coded]
-    values = written
-    values *= scale.factor
-    values += scale.offset
+    if (scale.factor, scale.offset) != (1.0, 0.0):
+        values = values * scale.factor
+        values += scale.offset
     kept = _forward(raw.time)
     count = raw.time.size - raw.time[kept].size
     if count:

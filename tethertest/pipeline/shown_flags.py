@@ -70,11 +70,11 @@ def without_codes(values: FloatArray) -> tuple[FloatArray, list[str]]:
     values : (n,) float64
         As written.
     """
-    result = values.copy()
+    result = values
     said = []
     huge = np.isfinite(values) & ((values > LARGEST) | (values < -LARGEST))
     if huge.any():
-        result[huge] = np.nan
+        result = np.where(huge, np.nan, result)
         first = values[huge][0]
         said.append(
             f"{np.count_nonzero(huge)} values are beyond {LARGEST:g}, the first {first:g}: no reading"
@@ -89,7 +89,7 @@ def without_codes(values: FloatArray) -> tuple[FloatArray, list[str]]:
             continue
         low, high = float(rest.min()), float(rest.max())
         if max(low - code, code - high) > CODE_RANGES * max(high - low, abs(low), abs(high)):
-            result[marked] = np.nan
+            result = np.where(marked, np.nan, result)
             said.append(
                 f"{count} values are {code:g}, and all others {low:.4g} to {high:.4g}: a code for none"
             )

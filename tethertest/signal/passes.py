@@ -11,7 +11,7 @@ import numpy.typing as npt
 #: samples that a rule looks at together, where it can: two megabytes of float64. A usual run is one block
 BLOCK: Final = 1 << 18
 #: a record of more samples is filtered block by block, and thinned or cut before it is transformed
-LONGEST: Final = 1 << 19
+LONGEST: Final = 1 << 18
 
 
 def blocks_of(size: int, block: int = BLOCK) -> Iterator[tuple[int, int]]:

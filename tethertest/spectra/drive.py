@@ -110,7 +110,10 @@ def fit_drive(channels: Sequence[Channel], window: Window, nominal: float) -> Dr
         raise refusals[0] if refusals else DataError("no channel to fit the drive to", "name a channel")
     frequency = _strongest([blocks for _, blocks in used], nominal)
     variances: list[float | None] = [None] * len(used)
+    tangents: list[_Tangent] = []
+    fits: list[OrderFit] = []
     for _ in range(WEIGHTINGS):
+        tangents, fits = [], []  # those of a long record are as large as it
         frequency, tangents = _settle(
             [blocks for _, blocks in used], variances, frequency, nominal, window.start
         )
@@ -167,6 +170,7 @@ def _settle(
     """Return the frequency at which no channel's weighted residual asks for a step, and the last tangents."""
     tangents: list[_Tangent] = []
     for _ in range(STEPS):
+        tangents = []  # the old ones go before there are new ones
         tangents = [
             _tangent(blocks, frequency, origin, variance)
             for blocks, variance in zip(series, variances, strict=True)

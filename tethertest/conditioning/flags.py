@@ -10,7 +10,8 @@ from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray
 from tethertest.records.channel import Channel, Finding, Flag, Severity
 from tethertest.records.rig import Rig, Sensor, sensor_range
-from tethertest.records.run import Run
+from tethertest.records.run import Exclude, Run
+from tethertest.signal.passes import blocks_of
 
 #: flags of single samples that become findings, and what they say; clock, hum and drift findings are made
 #: where seen
@@ -62,21 +63,83 @@ def with_excludes(channels: Sequence[Channel], run: Run) -> tuple[tuple[Channel,
         if channel is None:
             message = f"[[exclude]] names channel {item.channel!r}, the run has {', '.join(result)}"
             raise DataError(message, "correct the channel in run.toml", path=run.folder / "run.toml")
-        inside = (channel.time >= item.span[0]) & (channel.time <= item.span[1])
+        inside = excluded(channel, item)
         result[item.channel] = channel.with_flags(inside, Flag.EXCLUDED)
         if channel.usable.any() and not result[item.channel].usable.any():
             message = f"[[exclude]] leaves no sample of {item.channel!r}"
             remedy = "shorten the span, or leave the channel out of [[log]] channels"
             raise DataError(message, remedy, path=run.folder / "run.toml")
-        text = f"{item.span[0]:g}-{item.span[1]:g} s excluded by hand: {item.reason}"
-        count = int(np.count_nonzero(inside))
-        if not count:
-            span = f"{item.span[0]:g} s to {item.span[1]:g} s"
-            logged = f"{channel.time[0]:.4g} s to {channel.time[-1]:.4g} s"
-            message = f"[[exclude]] {item.channel!r} from {span}: it was logged from {logged}"
-            raise DataError(message, "correct the span in run.toml", path=run.folder / "run.toml")
-        findings.append(Finding(item.channel, "excluded", text, Severity.NOTE, (item.span,), count))
+        ends = (float(channel.time[0]), float(channel.time[-1]))
+        findings.append(exclude_finding(item, int(np.count_nonzero(inside)), ends, run))
     return tuple(result.values()), tuple(findings)
+
+
+def excluded(channel: Channel, item: Exclude) -> BoolArray:
+    """Return which samples of a channel a person excludes."""
+    return np.asarray((channel.time >= item.span[0]) & (channel.time <= item.span[1]), dtype=bool)
+
+
+def exclude_finding(item: Exclude, count: int, ends: tuple[float, float], run: Run) -> Finding:
+    """Return the finding about a span that a person excludes.
+
+    Parameters
+    ----------
+    item : Exclude
+        The span.
+    count : int
+        Samples in it.
+    ends : tuple of float
+        First and last time of the channel [s].
+    run : Run
+        For the message.
+
+    Raises
+    ------
+    DataError
+        It holds no sample.
+    """
+    if not count:
+        span = f"{item.span[0]:g} s to {item.span[1]:g} s"
+        logged = f"{ends[0]:.4g} s to {ends[1]:.4g} s"
+        message = f"[[exclude]] {item.channel!r} from {span}: it was logged from {logged}"
+        raise DataError(message, "correct the span in run.toml", path=run.folder / "run.toml")
+    text = f"{item.span[0]:g}-{item.span[1]:g} s excluded by hand: {item.reason}"
+    return Finding(item.channel, "excluded", text, Severity.NOTE, (item.span,), count)
+
+
+class FlagTally:
+    """Which flags a channel carries and where, counted as its blocks come in their order."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._spans: dict[Flag, list[tuple[float, float]]] = {flag: [] for flag in WORDS}
+        self._counts = dict.fromkeys(WORDS, 0)
+
+    def note(self, channel: Channel) -> None:
+        """Note what a block holds."""
+        for flag, spans in self._spans.items():
+            times = channel.time[(channel.flags & np.uint16(flag)) != 0]
+            if not times.size:
+                continue
+            self._counts[flag] += times.size
+            for group in np.split(times, np.flatnonzero(np.diff(times) > SPAN_APART) + 1):
+                start, stop = float(group[0]), float(group[-1])
+                if spans and start - spans[-1][1] <= SPAN_APART:
+                    spans[-1] = (spans[-1][0], stop)
+                else:
+                    spans.append((start, stop))
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """One finding for each kind of flag."""
+        return tuple(self._finding(flag, spans) for flag, spans in self._spans.items() if spans)
+
+    def _finding(self, flag: Flag, spans: list[tuple[float, float]]) -> Finding:
+        count = self._counts[flag]
+        named = ", ".join(f"{start:.3f}-{stop:.3f} s" for start, stop in spans[:SPANS_NAMED])
+        more = f" and {len(spans) - SPANS_NAMED} more" if len(spans) > SPANS_NAMED else ""
+        text = f"{WORDS[flag]}: {count} samples in {len(spans)} spans, {named}{more}"
+        return Finding(self._name, (flag.name or "").lower(), text, spans=tuple(spans), samples=count)
 
 
 def flag_findings(channel: Channel) -> tuple[Finding, ...]:
@@ -87,29 +150,10 @@ def flag_findings(channel: Channel) -> tuple[Finding, ...]:
     channel : Channel
         On the run's clock.
     """
-    found: list[Finding] = []
-    for flag in WORDS:
-        marked = (channel.flags & np.uint16(flag)) != 0
-        if not marked.any():
-            continue
-        count = int(np.count_nonzero(marked))
-        found.append(flag_finding(channel.name, flag, spans_of(channel, marked), count))
-    return tuple(found)
-
-
-def flag_finding(name: str, flag: Flag, spans: tuple[tuple[float, float], ...], count: int) -> Finding:
-    """Return the finding about one kind of flag, a key of `WORDS`, on some samples of a channel."""
-    named = ", ".join(f"{start:.3f}-{stop:.3f} s" for start, stop in spans[:SPANS_NAMED])
-    more = f" and {len(spans) - SPANS_NAMED} more" if len(spans) > SPANS_NAMED else ""
-    text = f"{WORDS[flag]}: {count} samples in {len(spans)} spans, {named}{more}"
-    return Finding(name, (flag.name or "").lower(), text, spans=spans, samples=count)
-
-
-def spans_of(channel: Channel, marked: BoolArray) -> tuple[tuple[float, float], ...]:
-    """Return the spans of marked samples [s], joined where they are closer than `SPAN_APART`."""
-    times = channel.time[marked]
-    groups = np.split(times, np.flatnonzero(np.diff(times) > SPAN_APART) + 1)
-    return tuple((float(group[0]), float(group[-1])) for group in groups if group.size)
+    tally = FlagTally(channel.name)
+    for start, stop in blocks_of(channel.time.size):
+        tally.note(channel.rows(start, stop))
+    return tally.findings
 
 
 def sensor_of(rig: Rig, channel: Channel) -> Sensor:

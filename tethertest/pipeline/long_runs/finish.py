@@ -8,11 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from tethertest.conditioning.flags import (
-    SPAN_APART,
-    WORDS,
-    flag_finding,
+    FlagTally,
+    exclude_finding,
+    excluded,
     sensor_of,
-    spans_of,
     with_range_flagged,
 )
 from tethertest.conditioning.plausible import hole_findings
@@ -20,7 +19,7 @@ from tethertest.conditioning.rest import RunWindows
 from tethertest.pipeline.long_runs.columns import Sizes
 from tethertest.pipeline.long_runs.rest import Zeroed
 from tethertest.records.arrays import FloatArray
-from tethertest.records.channel import Channel, Finding, Flag, Severity
+from tethertest.records.channel import Channel, Finding, Flag
 from tethertest.records.run import Run
 from tethertest.signal.noise import white_noise_of
 from tethertest.signal.passes import blocks_of
@@ -35,9 +34,9 @@ class Final:
         self._run = run
         self._windows = windows
         self._sizes = sizes
-        self._spans: dict[Flag, list[tuple[float, float]]] = {flag: [] for flag in WORDS}
-        self._counts = dict.fromkeys(WORDS, 0)
-        self._excluded = [0 for _ in run.file.exclude]
+        self._tally = FlagTally(sensor.about.name)
+        self._excludes = [item for item in run.file.exclude if item.channel == sensor.about.name]
+        self._excluded = [0 for _ in self._excludes]
         self._latest: float | None = None  #: time of the latest usable sample [s]
         self._holes: list[Finding] = []
 
@@ -55,10 +54,8 @@ class Final:
         """Return some samples as they go into the store."""
         tared = self._sensor.channel(start, stop)
         flagged = with_range_flagged(tared, sensor_of(self._run.rig, tared))
-        for item in self._run.file.exclude:
-            if item.channel == flagged.name:
-                inside = (flagged.time >= item.span[0]) & (flagged.time <= item.span[1])
-                flagged = flagged.with_flags(inside, Flag.EXCLUDED)
+        for item in self._excludes:
+            flagged = flagged.with_flags(excluded(flagged, item), Flag.EXCLUDED)
         return flagged
 
     def about(self) -> Channel:
@@ -75,20 +72,9 @@ class Final:
 
     def note(self, channel: Channel) -> None:
         """Note what a block holds; blocks come in their order, each once."""
-        for flag, spans in self._spans.items():
-            marked = (channel.flags & np.uint16(flag)) != 0
-            if not marked.any():
-                continue
-            self._counts[flag] += int(np.count_nonzero(marked))
-            for start, stop in spans_of(channel, marked):
-                if spans and start - spans[-1][1] <= SPAN_APART:
-                    spans[-1] = (spans[-1][0], stop)
-                else:
-                    spans.append((start, stop))
-        for number, item in enumerate(self._run.file.exclude):
-            if item.channel == channel.name:
-                inside = (channel.time >= item.span[0]) & (channel.time <= item.span[1])
-                self._excluded[number] += int(np.count_nonzero(inside))
+        self._tally.note(channel)
+        for number, item in enumerate(self._excludes):
+            self._excluded[number] += int(np.count_nonzero(excluded(channel, item)))
         usable = channel.time[channel.usable]
         if channel.kind == "displacement" and usable.size:
             bare = usable if self._latest is None else np.concatenate(([self._latest], usable))
@@ -100,25 +86,12 @@ class Final:
     @property
     def findings(self) -> list[Finding]:
         """What all blocks held."""
-        name = self._sensor.about.name
+        ends = [float(self._sensor.channel(row, row + 1).time[0]) for row in (0, self.rows - 1)]
         by_hand = [
-            Finding(
-                name,
-                "excluded",
-                f"{item.span[0]:g}-{item.span[1]:g} s excluded by hand: {item.reason}",
-                Severity.NOTE,
-                (item.span,),
-                count,
-            )
-            for item, count in zip(self._run.file.exclude, self._excluded, strict=True)
-            if item.channel == name
+            exclude_finding(item, count, (ends[0], ends[1]), self._run)
+            for item, count in zip(self._excludes, self._excluded, strict=True)
         ]
-        flags = [
-            flag_finding(name, flag, tuple(spans), self._counts[flag])
-            for flag, spans in self._spans.items()
-            if spans
-        ]
-        return [*by_hand, *self._holes, *flags]
+        return [*by_hand, *self._holes, *self._tally.findings]
 
 
 def final_channels(

@@ -110,6 +110,10 @@ HOSTILE: dict[str, tuple[Callable[[Any], None], str]] = {
     "channel gone": (_without(TOP), "not those that it lists: a%2Fb"),
     "newer": (_set("/", "format_version", 2), "found 2, this version reads 1"),
     "no version": (_without_attribute("/", "format_version"), "/@format_version: found nothing"),
+    "hashes of fewer files": (
+        lambda f: f.attrs.__setitem__("input_sha256", ["00" * 32]),
+        "/@input_sha256: found 1, expected 2",
+    ),
     "other format": (_set("/", "format", "somebody-else"), "found format 'somebody-else'"),
     "kind": (_set(TOP, "kind", "colour"), "found 'colour', expected one of tension"),
     "number is text": (_set(TOP, "noise", "loud"), "/channels/a%2Fb@noise: found 'loud', expected a number"),

@@ -56,8 +56,8 @@ def test_whole_rows_teach_offsets_gains_and_the_span_of_the_motion() -> None:
 
 
 def test_a_grating_may_part_by_three_tenths_of_a_fast_change() -> None:
-    # the common motion of two is their mean: half of what one is late
-    for late, kept in ((0.5, True), (0.7, False)):
+    # the common motion of two is their mean, so that half of it is late in either, and the change less
+    for late, kept in ((0.36, True), (0.46, False)):
         taught = learnt(rough(), whole(late), ROWS, 400)
         assert taught is not None
         keeps = taught[2]

@@ -292,3 +292,10 @@ def test_a_front_of_two_early_samples_is_a_jump_between_two_and_of_more_a_ramp(
     found = find_front(channel(time, values, at=0.0), Window(0.5, 3.5))
     assert found is not None
     assert (found.time - 2.0) * 100.0 == pytest.approx(share, abs=0.05)
+
+
+def test_a_rise_is_timed_by_the_samples_own_stamps(channel: Maker) -> None:
+    """As the first snap above, with the stamps of the rise uneven: 1 N at 1.5 s, 9 N at 3.875 s."""
+    time = np.array([0.0, 1.0, 2.0, 3.5, 4.0, 5.5, 6.0, 7.0, 8.0])
+    values = np.array([0.0, 0.0, 2.0, 6.0, 10.0, 7.0, 3.0, 3.0, 3.0])
+    assert snap(channel(time, values), 1.0, 4.0, 10.0).rise_time == pytest.approx(2.375)

@@ -43,7 +43,7 @@ report: setup-report  ## the main job on one run: reports/<run>/report.html
 	$(BIN)/tethertest report $(RUN)
 
 test: setup  ## the tests
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) -m "not browser and not verify"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not browser and not verify"
 
 # the longest come first: what is left is shared out as it comes
 LOGS := tests/verification/test_clock_errors.py tests/store tests/fuzz tests/hostile tests/readers \

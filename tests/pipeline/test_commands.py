@@ -8,8 +8,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
-from tethertest.cli import main
+from tethertest.cli import app, main
 
 ROOT = Path(__file__).parents[2]
 RUN = ROOT / "datasets" / "rig3m" / "run04"
@@ -25,24 +26,32 @@ def typed(
     return int(left.value.code or 0), said.out, said.err
 
 
-def test_report_passes_and_writes_page_and_summary(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    code, out, err = typed(["report", str(RUN), "-o", str(tmp_path), "--json"], monkeypatch, capsys)
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int, str, str]:
+    """A report's folder, its exit code and what it printed."""
+    folder = tmp_path_factory.mktemp("written")
+    done = CliRunner().invoke(app, ["report", str(RUN), "-o", str(folder), "--json"])
+    return folder, done.exit_code, done.stdout, done.stderr
+
+
+def test_report_passes_and_writes_page_and_summary(written: tuple[Path, int, str, str]) -> None:
+    folder, code, out, err = written
     assert (code, err) == (0, "")
     said = json.loads(out)
     assert said["verdict"] == "pass"
     assert {"run", "verdict", "reasons", "metrics", "lines", "paths"} <= set(said)
-    assert {path.name for path in tmp_path.iterdir()} == {"report.html", "summary.json"}
+    assert {path.name for path in folder.iterdir()} == {"report.html", "summary.json"}
 
 
 def test_a_second_report_is_the_same_to_the_byte(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    written: tuple[Path, int, str, str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    for name in ("first", "second"):
-        typed(["report", str(RUN), "-o", str(tmp_path / name)], monkeypatch, capsys)
+    typed(["report", str(RUN), "-o", str(tmp_path)], monkeypatch, capsys)
     for file in ("report.html", "summary.json"):
-        assert (tmp_path / "first" / file).read_bytes() == (tmp_path / "second" / file).read_bytes()
+        assert (tmp_path / file).read_bytes() == (written[0] / file).read_bytes()
 
 
 def test_the_truth_beside_a_run_changes_nothing(

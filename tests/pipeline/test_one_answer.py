@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,6 @@ from tethertest.pipeline.across_runs import run_part
 from tethertest.pipeline.analysis_options import Options
 from tethertest.pipeline.analyze import analyze
 from tethertest.pipeline.ingest import ingest_run
-from tethertest.pipeline.report import make_report
 from tethertest.records.across import RunPart
 from tethertest.records.analysis import MEASURED, REPLAYED, Analysis
 from tethertest.records.lines import ChannelLines
@@ -41,13 +41,17 @@ class Answers:
 
 
 @pytest.fixture(scope="module", params=RUNS)
-def answers(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Answers:
+def answers(
+    request: pytest.FixtureRequest,
+    tmp_path_factory: pytest.TempPathFactory,
+    campaign_report: Callable[[Path], Report],
+) -> Answers:
     folder = ROOT / "datasets" / "rig3m" / request.param
     store = tmp_path_factory.mktemp(request.param) / "run.h5"
     ingest_run(folder, store, RIGS)
     options = Options(rigs=RIGS, replay=True)
     return Answers(
-        make_report(folder, RIGS),
+        campaign_report(folder),
         analyze(folder, options),
         analyze(store, options),
         run_part(folder, options),

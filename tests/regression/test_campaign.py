@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from reports.rig3m_campaign.check import check_run
-from tethertest.pipeline.report import make_report
+from reports.rig3m_campaign import check
 from tethertest.records.channel import Flag
+from tethertest.records.report import Report
 
 ROOT = Path(__file__).parents[2]
 CAMPAIGN = ROOT / "datasets" / "rig3m"
@@ -18,23 +19,29 @@ QUICK = {"run04": {"pass"}, "run15": {"fail", "undecided"}, "run16": {"pass"}, "
 OTHERS = sorted(path.name for path in CAMPAIGN.glob("run*") if path.name not in QUICK)
 
 
+Reports = Callable[[Path], Report]
+
+
 @pytest.mark.parametrize("name", QUICK)
-def test_what_the_report_recovers_is_the_truth(name: str) -> None:
-    check = check_run(CAMPAIGN / name)
-    assert check.complaints == []
-    assert check.verdict in QUICK[name]
+def test_what_the_report_recovers_is_the_truth(
+    name: str, campaign_report: Reports, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(check, "make_report", campaign_report)
+    found = check.check_run(CAMPAIGN / name)
+    assert found.complaints == []
+    assert found.verdict in QUICK[name]
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("name", OTHERS)
 def test_every_other_run_too(name: str) -> None:
-    assert check_run(CAMPAIGN / name).complaints == []
+    assert check.check_run(CAMPAIGN / name).complaints == []
 
 
-def test_f_over_two_of_the_drive_is_told_from_a_true_period_two() -> None:
+def test_f_over_two_of_the_drive_is_told_from_a_true_period_two(campaign_report: Reports) -> None:
     """Run 16's half-order comes in through a gear; run 15's is made by the cable."""
-    borne = make_report(CAMPAIGN / "run16")
-    made = make_report(CAMPAIGN / "run15")
+    borne = campaign_report(CAMPAIGN / "run16")
+    made = campaign_report(CAMPAIGN / "run15")
 
     def verdict_of_half_order(report: object) -> str:
         lines = next(item for item in report.measured_lines if item.channel == "tension_top")  # type: ignore[attr-defined]
@@ -46,8 +53,8 @@ def test_f_over_two_of_the_drive_is_told_from_a_true_period_two() -> None:
     assert not any("moves along the cable only" in reason for reason in borne.comparison.reasons)
 
 
-def test_a_lost_grating_blanks_itself_and_moves_no_other() -> None:
-    report = make_report(CAMPAIGN / "run18")
+def test_a_lost_grating_blanks_itself_and_moves_no_other(campaign_report: Reports) -> None:
+    report = campaign_report(CAMPAIGN / "run18")
     truth = json.loads((CAMPAIGN / "run18" / "truth.json").read_text(encoding="utf-8"))
     lost = {flaw["channel"]: flaw["samples"] for flaw in truth["flaws"]}
     for channel in report.measured.channels:

@@ -4,7 +4,8 @@ BIN := .venv/bin
 RUN ?= datasets/rig3m/run04
 JOBS ?= 2
 
-.PHONY: setup setup-report lock report test verify verify-logs verify-lines verify-rest bench stability mutants lint schema site
+.PHONY: setup setup-report lock report test plain oldest verify verify-logs verify-lines verify-rest \
+	bench stability mutants lint schema site
 .DEFAULT_GOAL := report
 
 # One environment that grows: a report needs few packages, tests and checks need more, both from locked files.
@@ -44,6 +45,20 @@ report: setup-report  ## the main job on one run: reports/<run>/report.html
 
 test: setup  ## the tests
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not browser and not verify"
+
+plain: setup  ## kernels as the Python that they are written in
+	NUMBA_DISABLE_JIT=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) tests/unit/kernels
+
+# Neighbours that no bound names are the newest, and warn of what the oldest do: warnings are no errors here.
+OLDEST := .venv/oldest/bin/python
+oldest: $(UV)  ## the tests with the lowest versions that pyproject.toml allows
+	$(PYTHON) -m venv .venv/oldest
+	$(UV) pip compile --quiet --resolution lowest-direct --only-binary :all: --no-emit-index-url --python $(OLDEST) \
+		pyproject.toml --extra dev --group build --output-file .venv/oldest/lowest.txt
+	$(OLDEST) -m pip install --quiet --disable-pip-version-check --no-deps --no-compile -r .venv/oldest/lowest.txt
+	$(OLDEST) -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	NUMBA_CACHE_DIR=.venv/oldest/kernels OPENBLAS_NUM_THREADS=1 $(OLDEST) -m pytest -n $(JOBS) \
+		-o filterwarnings=default -m "not browser and not verify"
 
 # the longest come first: what is left is shared out as it comes
 LOGS := tests/verification/test_clock_errors.py tests/store tests/fuzz tests/hostile tests/readers \

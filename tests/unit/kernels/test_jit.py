@@ -7,6 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
+import pytest
+
 import tethertest
 from tethertest.kernels import jit
 from tethertest.kernels.record import widen
@@ -24,6 +27,7 @@ print(highest, lowest)
 """
 
 
+@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="make plain compiles nothing")
 def test_the_cache_is_named_after_all_kernels(monkeypatch) -> None:  # type: ignore[no-untyped-def]
     def probe() -> None:
         """Do nothing."""

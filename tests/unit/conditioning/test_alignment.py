@@ -272,3 +272,16 @@ def test_a_span_that_knows_its_delay_to_twenty_milliseconds_only_says_nothing():
         told = delays(compared, line)
         assert (len(told) == len(SPANS)) is every
         assert all(item.error < 0.02 for item in told)
+
+
+def test_the_first_sample_of_an_uneven_record_counts_as_any_other():
+    random = np.random.default_rng(1)
+    time = (np.arange(3000) + random.uniform(-0.2, 0.2, 3000)) / 30.0
+    values = np.where(np.arange(3000) == 0, 1.0, 0.0)
+    none = np.zeros(3000, np.uint16)
+    raised, plain = (
+        uniform(Channel("s", "tension", "N", time, item, none)) for item in (values, 0.0 * values)
+    )
+    apart = np.abs(raised.values - plain.values)
+    assert np.max(apart[plain.usable]) > 0.01
+    assert np.argmax(apart) == 0

@@ -77,6 +77,10 @@ def test_a_peak_that_stands_still_while_the_others_move_is_none_of_a_strained_gr
     rare = column.copy()
     rare[49:, 0] = -1
     assert unmoved(whole(), rare, shift, every).tolist() == [False, False, True]
+    # nor is one that is seen at rest only
+    rest = column.copy()
+    rest[100:, 0] = -1
+    assert unmoved(whole(), rest, shift, every).tolist() == [False, False, True]
     rare[49:, 2] = -1
     assert unmoved(whole(), rare, shift, every).tolist() == [False, False, False]
     rare[:, 2] = np.where(ROWS % 8 == 0, 2, -1)

@@ -98,6 +98,14 @@ def test_the_covariance_of_a_fit_is_that_of_least_squares() -> None:
     assert np.diag(fit.covariance(9.0))[2:] == pytest.approx(9.0 * 2.0 / 1000.0, rel=0.02)
 
 
+def test_a_fit_takes_its_coefficients_off_the_degrees_of_freedom() -> None:
+    time = np.arange(21) / 10.0
+    noisy = np.cos(2 * np.pi * time) + np.random.default_rng(7).standard_normal(21)
+    fit = fit_sinusoids(block_means(time, noisy, np.arange(21) != 9, 10.0), [1.0], 0.0)
+    # twenty samples, and four numbers: offset, drift, cosine and sine
+    assert fit.covariance() == pytest.approx(float(fit.residuals @ fit.residuals) / 16.0 * fit.inverse)
+
+
 def test_trends_are_legendres_polynomials_from_minus_one_to_one() -> None:
     blocks = block_means(np.arange(11) / 10.0, np.ones(11), whole(11), 10.0)
     columns = trend_columns(blocks, 2)
@@ -137,6 +145,8 @@ def test_the_usual_interval_leaves_gaps_out_and_is_free_of_rounding() -> None:
     stamps = np.round(np.arange(300) / 30.0, 3)
     assert sampling_interval(stamps) == pytest.approx(1.0 / 30.0, rel=1e-4)
     assert sampling_interval(np.append(stamps, stamps + 100.0)) == pytest.approx(1.0 / 30.0, rel=1e-4)
+    lost = np.delete(stamps, [50, 51, 120, 200, 201, 202])
+    assert sampling_interval(lost) == pytest.approx(1.0 / 30.0, rel=1e-4)
     assert sampling_interval(np.array([0.0, 1.0, 2.26])) == pytest.approx(1.13)
 
 

@@ -30,7 +30,7 @@ PACKAGES: Final = ("compare", "conditioning", "similitude", "spectra", "store")
 def main() -> int:
     """Try the mutants and write the table."""
     parser = argparse.ArgumentParser(prog="python -m reports.mutants", description=__doc__)
-    parser.add_argument("--packages", nargs="+", choices=sorted(TESTS), default=list(PACKAGES))
+    parser.add_argument("--packages", nargs="+", choices=sorted(TESTS), help="those sampled where absent")
     parser.add_argument("--count", type=int, default=40, help="mutants of each package")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
@@ -39,7 +39,7 @@ def main() -> int:
     parser.add_argument("--output", type=Path, help="instead of the table in reports/mutants")
     given = parser.parse_args()
     os.chdir(ROOT)
-    packages = tuple(given.packages)
+    packages = tuple(given.packages or (sorted(TESTS) if given.hand_made else PACKAGES))
     if given.hand_made:
         mutants, gone = hand_made(ROOT, packages)
         print("".join(f"gone from the code: {item}\n" for item in gone), end="", file=sys.stderr)

@@ -76,6 +76,8 @@ def bare_error(error: FileFormatError, *, given: bool) -> TethertestError:
     given : bool
         Whether settings were given: then it is these that it speaks of.
     """
+    if error.keys:
+        return error.without_run()
     problem = error.problem.replace(_RUN_FILE, SET) if given else error.problem
     remedy = error.remedy
     if _HERE in remedy:

@@ -9,7 +9,7 @@ from typing import Final
 
 _NAMES: Final = frozenset([
     "time", "timestamp", "time stamp", "datetime", "date time", "date", "x_value", "elapsed",
-    "elapsed time", "relative time", "epoch", "unix", "unix time", "seconds", "sec", "zeit",
+    "elapsed time", "relative time", "epoch", "unix", "unix time", "seconds", "secs", "sec", "zeit",
     "temps", "tiempo", "tempo", "时间", "采样时间", "时刻",
 ])  # fmt: skip
 _NAME_WITH_UNIT = re.compile(

@@ -8,7 +8,7 @@ from typing import Literal
 from reports.clock_errors.bound import Bound
 from reports.clock_errors.random_runs import SyntheticRun, random_run
 from reports.clock_errors.rig import RIG
-from tethertest.conditioning.clocks import fitted_clock
+from tethertest.conditioning.clocks.fitted import fitted_clock
 from tethertest.records.channel import Severity
 from tethertest.records.rig import Rig
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tethertest.conditioning.stamps import audit_stamps
+from tethertest.conditioning.timestamps.stamps import audit_stamps
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, RawLog
 from tethertest.units import Kind

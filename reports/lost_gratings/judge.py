@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reports.lost_gratings.cases import RATE, Case
-from tethertest.conditioning.gratings import assigned
+from tethertest.conditioning.gratings.assignment import assigned
 from tethertest.records.channel import Channel, Flag
 from tethertest.units import Kind
 

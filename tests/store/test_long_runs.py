@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from tethertest.conditioning import condition
-from tethertest.conditioning.plateaus import plateaus_of, with_plateaus_flagged
-from tethertest.conditioning.stamps import audit_stamps
+from tethertest.conditioning.flags.plateaus import plateaus_of, with_plateaus_flagged
+from tethertest.conditioning.timestamps.stamps import audit_stamps
 from tethertest.errors import DataError, TethertestError
 from tethertest.pipeline.evaluation import read_logs, rig_priors
 from tethertest.pipeline.ingest import ingest_run

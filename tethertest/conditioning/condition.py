@@ -7,22 +7,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from tethertest.conditioning.clocks import fitted_clock, identity
+from tethertest.conditioning.clocks.fitted import fitted_clock, identity
+from tethertest.conditioning.clocks.shared_clocks import shared_clock_findings
 from tethertest.conditioning.cross_check import cross_findings, gains
-from tethertest.conditioning.flags import flag_findings, sensor_of, with_excludes, with_range_flagged
-from tethertest.conditioning.hum import with_hum_flagged
+from tethertest.conditioning.flags.hum import with_hum_flagged
+from tethertest.conditioning.flags.limits import flag_findings, sensor_of, with_excludes, with_range_flagged
+from tethertest.conditioning.flags.negative_tension import pushing_findings
+from tethertest.conditioning.flags.plateaus import with_plateaus_flagged
+from tethertest.conditioning.flags.plausible import check_alive, check_range, check_rate, hole_findings
+from tethertest.conditioning.flags.spikes import with_spikes_flagged
+from tethertest.conditioning.flags.steps import with_steps_flagged
 from tethertest.conditioning.inertia import cable_inertia
-from tethertest.conditioning.load_cells import calibrated
-from tethertest.conditioning.logged import LoggedChannels, as_logged
-from tethertest.conditioning.plateaus import with_plateaus_flagged
-from tethertest.conditioning.plausible import check_alive, check_range, check_rate, hole_findings
-from tethertest.conditioning.pushing import pushing_findings
+from tethertest.conditioning.load_cells.calibration import calibrated
 from tethertest.conditioning.rest import RunWindows, windows_of
 from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.conditioning.sensors import finished
-from tethertest.conditioning.shared_clocks import shared_clock_findings
-from tethertest.conditioning.spikes import with_spikes_flagged
-from tethertest.conditioning.steps import with_steps_flagged
+from tethertest.conditioning.timestamps.logged import LoggedChannels, as_logged
 from tethertest.errors import DataError
 from tethertest.records.channel import Channel, ClockFit, ConditionedRun, Finding, RawLog, Severity
 from tethertest.records.rig import Rig, sensor_noise

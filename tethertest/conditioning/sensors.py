@@ -7,18 +7,25 @@ from dataclasses import replace
 
 import numpy as np
 
-from tethertest.conditioning.flags import sensor_of
-from tethertest.conditioning.mapping import is_grating
-from tethertest.conditioning.rest import RunWindows
-from tethertest.conditioning.rig_priors import RigPriors
-from tethertest.conditioning.strain import (
+from tethertest.conditioning.flags.limits import sensor_of
+from tethertest.conditioning.gratings.strain import (
     RECTANGLE,
     TEMPERATURE_CUTOFF,
     apparent_strain,
     strain_of,
     temperature_of,
 )
-from tethertest.conditioning.tare import DEFAULT_RATED, STRAIN_DRIFT, TENSION_DRIFT, Level, rest_level, zeroed
+from tethertest.conditioning.load_cells.tare import (
+    DEFAULT_RATED,
+    STRAIN_DRIFT,
+    TENSION_DRIFT,
+    Level,
+    rest_level,
+    zeroed,
+)
+from tethertest.conditioning.rest import RunWindows
+from tethertest.conditioning.rig_priors import RigPriors
+from tethertest.conditioning.timestamps.mapping import is_grating
 from tethertest.records.channel import Channel, Finding, Severity
 from tethertest.records.rig import Rig, Sensor
 from tethertest.signal.filters import filled, filled_reader, low_passed

@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from tethertest.conditioning.stamp_steps import EvenRows, quantised_steps, reader_of
-from tethertest.conditioning.stamps import irregularity
+from tethertest.conditioning.timestamps.stamp_steps import EvenRows, quantised_steps, reader_of
+from tethertest.conditioning.timestamps.stamps import irregularity
 from tethertest.errors import DataError, QuantityError
 from tethertest.pipeline.read_bare import read_bare
 from tethertest.pipeline.shown_flags import SHOWN, with_shown_flags, without_codes

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tethertest.conditioning.stamp_steps import steps_of
+from tethertest.conditioning.timestamps.stamp_steps import steps_of
 from tethertest.errors import TethertestError
 from tethertest.pipeline.draft import Draft, DraftLog
 from tethertest.pipeline.draft_text import TODO, draft_text

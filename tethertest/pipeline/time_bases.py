@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from tethertest.conditioning.logged import with_same_times
-from tethertest.conditioning.stamp_steps import Steps, steps_of
-from tethertest.conditioning.stamps import JITTER_FRACTION, look_the_same
+from tethertest.conditioning.timestamps.logged import with_same_times
+from tethertest.conditioning.timestamps.stamp_steps import Steps, steps_of
+from tethertest.conditioning.timestamps.stamps import JITTER_FRACTION, look_the_same
 from tethertest.pipeline.bare_log import JITTER
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import RawLog

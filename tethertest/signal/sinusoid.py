@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from tethertest.signal.blocked_matmul import tall_cross, tall_times
 from tethertest.signal.blocks import Blocks
-from tethertest.signal.tall import tall_cross, tall_times
 
 FloatArray = npt.NDArray[np.float64]
 #: a variance inflated so many times by the other columns is nothing but round-off

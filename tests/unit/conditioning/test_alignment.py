@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tethertest.conditioning.alignment import Comparison, Pair, fitted
-from tethertest.conditioning.band import best_cutoff
-from tethertest.conditioning.correlation import scanned
-from tethertest.conditioning.folding import without_folding
-from tethertest.conditioning.rivals import chosen
-from tethertest.conditioning.straight import delays, worst
-from tethertest.conditioning.uniform import Signal, uniform, worn
+from tethertest.conditioning.clocks.alignment import Comparison, Pair, fitted
+from tethertest.conditioning.clocks.band import best_cutoff
+from tethertest.conditioning.clocks.clock_linearity import delays, worst
+from tethertest.conditioning.clocks.correlation import scanned
+from tethertest.conditioning.clocks.cycle_ambiguity import chosen
+from tethertest.conditioning.clocks.folding import without_folding
+from tethertest.conditioning.clocks.uniform import Signal, uniform, worn
 from tethertest.records.channel import Channel
 
 PRIOR = 1e-4 / np.sqrt(3.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tethertest.conditioning.alignment import levels
+from tethertest.conditioning.clocks.alignment import levels
 
 
 def test_levels_are_a_parabola_and_cosines_up_to_a_frequency() -> None:

@@ -7,8 +7,8 @@ import datetime as dt
 import numpy as np
 import pytest
 
-from tethertest.conditioning.calibration_curves import curve_of
-from tethertest.conditioning.load_cells import calibrated
+from tethertest.conditioning.load_cells.calibration import calibrated
+from tethertest.conditioning.load_cells.calibration_curves import curve_of
 from tethertest.errors import DataError
 from tethertest.records.cable import Cable, Platform
 from tethertest.records.calibration import Calibration, CalibrationData, CalibrationPoint

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tethertest.conditioning import condition
-from tethertest.conditioning.clocks import HAND_ERROR
+from tethertest.conditioning.clocks.fitted import HAND_ERROR
 from tethertest.records.run import ClockOffset, Override, Windows
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from tethertest.conditioning.coloured import noise_of
+from tethertest.conditioning.clocks.coloured import noise_of
 
 STEP, COUNT = 0.02, 4000
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.stats import t
 
-from tethertest.conditioning.calibration_curves import Curve, curve_of
-from tethertest.conditioning.load_cells import calibrated
+from tethertest.conditioning.load_cells.calibration import calibrated
+from tethertest.conditioning.load_cells.calibration_curves import Curve, curve_of
 from tethertest.errors import DataError
 from tethertest.records.calibration import Calibration
 from tethertest.records.rig import Sensor

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tethertest.conditioning.signals import expected_pair
+from tethertest.conditioning.clocks.signals import expected_pair
 from tethertest.records.channel import Channel, Flag
 
 STEP, WORN = 2e-3, 0.04

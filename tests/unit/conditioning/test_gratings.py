@@ -7,7 +7,7 @@ import pytest
 
 from reports.lost_gratings.cases import random_case
 from reports.lost_gratings.judge import judge
-from tethertest.conditioning.gratings import assigned
+from tethertest.conditioning.gratings.assignment import assigned
 from tethertest.records.cable import Cable, Platform
 from tethertest.records.channel import Channel, Flag
 from tethertest.records.rig import Instrument, Limits, Rig, Sensor

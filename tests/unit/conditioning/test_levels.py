@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tethertest.conditioning.coloured import noise_of
-from tethertest.conditioning.hum import hum_amplitude, with_hum_flagged
-from tethertest.conditioning.jumps import without_jumps
-from tethertest.conditioning.spikes import with_spikes_flagged
-from tethertest.conditioning.tare import Level, rest_level, zeroed
+from tethertest.conditioning.clocks.coloured import noise_of
+from tethertest.conditioning.flags.hum import hum_amplitude, with_hum_flagged
+from tethertest.conditioning.flags.spikes import with_spikes_flagged
+from tethertest.conditioning.load_cells.tare import Level, rest_level, zeroed
+from tethertest.conditioning.timestamps.jumps import without_jumps
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Flag, Window
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tethertest.conditioning.pattern import Pattern, coarse, learnt
-from tethertest.conditioning.peak_ghosts import stray, unmoved
+from tethertest.conditioning.gratings.pattern import Pattern, coarse, learnt
+from tethertest.conditioning.gratings.spurious_peaks import stray, unmoved
 
 EXPECTED = np.array([1500e-9, 1510e-9, 1540e-9])
 CAPTURE = np.full(3, 3e-9)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tethertest.conditioning.pushing import pushing_findings
+from tethertest.conditioning.flags.negative_tension import pushing_findings
 from tethertest.records.channel import Channel, Finding
 
 from .conftest import RIG

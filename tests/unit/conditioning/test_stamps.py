@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tethertest.conditioning.stamps import audit_stamps
-from tethertest.conditioning.starts import start_after
+from tethertest.conditioning.timestamps.stamps import audit_stamps
+from tethertest.conditioning.timestamps.starts import start_after
 from tethertest.errors import DataError
 from tethertest.records.channel import Flag, RawLog
 from tethertest.records.run import Log

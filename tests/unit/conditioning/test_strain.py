@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tethertest.conditioning import condition
-from tethertest.conditioning.strain import strain_of, temperature_of
-from tethertest.conditioning.tare import Level, rest_level, zeroed
+from tethertest.conditioning.gratings.strain import strain_of, temperature_of
+from tethertest.conditioning.load_cells.tare import Level, rest_level, zeroed
 from tethertest.errors import DataError
 from tethertest.records.cable import Cable, Platform
 from tethertest.records.channel import Channel, Flag, Window

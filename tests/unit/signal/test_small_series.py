@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tethertest.signal.blocked_matmul import tall_cross, tall_times
 from tethertest.signal.blocks import block_means
 from tethertest.signal.filters import moving_mean, without_line
 from tethertest.signal.noise import quantum, white_noise
 from tethertest.signal.rotation import times
 from tethertest.signal.series import sampling_interval
 from tethertest.signal.sinusoid import fit_sinusoids, sinusoid_pair, trend_columns
-from tethertest.signal.tall import tall_cross, tall_times
 
 
 def whole(count: int) -> np.ndarray:

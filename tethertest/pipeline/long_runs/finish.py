@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from tethertest.conditioning.flags import (
+from tethertest.conditioning.flags.limits import (
     FlagTally,
     exclude_finding,
     excluded,
     sensor_of,
     with_range_flagged,
 )
-from tethertest.conditioning.plausible import hole_findings
+from tethertest.conditioning.flags.plausible import hole_findings
 from tethertest.conditioning.rest import RunWindows
 from tethertest.pipeline.long_runs.columns import Sizes
 from tethertest.pipeline.long_runs.rest import Zeroed

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tethertest.conditioning.flags import sensor_of
-from tethertest.conditioning.load_cells import calibrated
-from tethertest.conditioning.plateaus import Plateaus, plateaus_of
-from tethertest.conditioning.spikes import CONTEXT, SpikeRule
+from tethertest.conditioning.flags.limits import sensor_of
+from tethertest.conditioning.flags.plateaus import Plateaus, plateaus_of
+from tethertest.conditioning.flags.spikes import CONTEXT, SpikeRule
+from tethertest.conditioning.load_cells.calibration import calibrated
 from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.record import Record
 from tethertest.records.arrays import FloatArray

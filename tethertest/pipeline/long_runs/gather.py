@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tethertest.conditioning.mapping import Pairing, paired
-from tethertest.conditioning.starts import start_after
+from tethertest.conditioning.timestamps.mapping import Pairing, paired
+from tethertest.conditioning.timestamps.starts import start_after
 from tethertest.errors import DataError
 from tethertest.pipeline.long_runs.columns import Column, Scratch
 from tethertest.records.arrays import FloatArray

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from tethertest.conditioning import condition
 from tethertest.conditioning.condition import mapped_finding
-from tethertest.conditioning.plausible import check_rate
+from tethertest.conditioning.flags.plausible import check_rate
+from tethertest.conditioning.flags.spikes import CONTEXT
 from tethertest.conditioning.rest import RunWindows
-from tethertest.conditioning.spikes import CONTEXT
 from tethertest.errors import DataError
 from tethertest.pipeline.evaluation import rig_priors
 from tethertest.pipeline.long_runs.columns import Scratch, Sizes, no_scratch

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tethertest.conditioning.jumps import NEAR, SHORTEST_JUMP, SIDE, without_jumps
-from tethertest.conditioning.mapping import Pairing
-from tethertest.conditioning.stamps import audit_of
+from tethertest.conditioning.timestamps.jumps import NEAR, SHORTEST_JUMP, SIDE, without_jumps
+from tethertest.conditioning.timestamps.mapping import Pairing
+from tethertest.conditioning.timestamps.stamps import audit_of
 from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.gather import Gathered
 from tethertest.records.arrays import FloatArray

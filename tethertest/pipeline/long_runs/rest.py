@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tethertest.conditioning.condition import DEFAULT_NOISE, mapped
-from tethertest.conditioning.flags import sensor_of
-from tethertest.conditioning.hum import with_hum_flagged
+from tethertest.conditioning.flags.hum import with_hum_flagged
+from tethertest.conditioning.flags.limits import sensor_of
 from tethertest.conditioning.rest import RunWindows
 from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.conditioning.sensors import finished

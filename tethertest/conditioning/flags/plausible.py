@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tethertest.conditioning.flags import sensor_of
+from tethertest.conditioning.flags.limits import sensor_of
 from tethertest.errors import DataError
 from tethertest.records.channel import Channel, Finding, Flag, Severity, Window
 from tethertest.records.rig import Rig, sensor_range

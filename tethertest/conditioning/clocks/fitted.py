@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tethertest.conditioning.alignment import Comparison
-from tethertest.conditioning.band import best_cutoff
-from tethertest.conditioning.comparable import Comparable, comparables
-from tethertest.conditioning.correlation import SEARCH, scanned
+from tethertest.conditioning.clocks.alignment import Comparison
+from tethertest.conditioning.clocks.alignment_tasks import Comparable, comparables
+from tethertest.conditioning.clocks.band import best_cutoff
+from tethertest.conditioning.clocks.clock_linearity import Delay, delays, worst
+from tethertest.conditioning.clocks.correlation import SEARCH, scanned
+from tethertest.conditioning.clocks.cycle_ambiguity import Rival, chosen
 from tethertest.conditioning.rig_priors import RigPriors
-from tethertest.conditioning.rivals import Rival, chosen
-from tethertest.conditioning.straight import Delay, delays, worst
 from tethertest.records.channel import Channel, ClockFit, Finding, Severity
 from tethertest.records.run import Run
 

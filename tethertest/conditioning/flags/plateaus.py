@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from tethertest.conditioning.repeats import IntArray, Reader, Repeats, repeats_of
+from tethertest.conditioning.flags.repeats import IntArray, Reader, Repeats, repeats_of
 from tethertest.records.arrays import BoolArray, FlagArray, FloatArray
 from tethertest.records.channel import Channel, Flag
 from tethertest.signal.noise import quantum, white_noise

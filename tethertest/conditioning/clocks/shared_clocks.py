@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tethertest.conditioning.clocks import fitted_clock
+from tethertest.conditioning.clocks.fitted import fitted_clock
 from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.records.channel import Channel, ClockFit, Finding, Severity
 from tethertest.records.run import Run

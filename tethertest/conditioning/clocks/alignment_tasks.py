@@ -8,10 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from tethertest.conditioning.alignment import Pair
-from tethertest.conditioning.folding import without_folding
-from tethertest.conditioning.rig_priors import UNSTATED_DAMPING_TIME, RigPriors
-from tethertest.conditioning.signals import (
+from tethertest.conditioning.clocks.alignment import Pair
+from tethertest.conditioning.clocks.folding import without_folding
+from tethertest.conditioning.clocks.signals import (
     MOTION_STEP,
     TAP_HIGH_PASS,
     expected_pair,
@@ -19,7 +18,8 @@ from tethertest.conditioning.signals import (
     strain_pair,
     tap_pair,
 )
-from tethertest.conditioning.taps import tap_spans
+from tethertest.conditioning.clocks.taps import tap_spans
+from tethertest.conditioning.rig_priors import UNSTATED_DAMPING_TIME, RigPriors
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel
 from tethertest.records.run import Run

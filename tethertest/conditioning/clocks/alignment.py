@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from tethertest.conditioning.coloured import Noise, noise_of
-from tethertest.conditioning.uniform import Signal
+from tethertest.conditioning.clocks.coloured import Noise, noise_of
+from tethertest.conditioning.clocks.uniform import Signal
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.signal.spline import spline
 from tethertest.signal.windows import Span

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tethertest.conditioning.alignment import UNUSUAL_ONCE_CHOSEN, Comparison, Fit, fitted
-from tethertest.conditioning.correlation import APART, LARGEST_GAIN, SMALLEST_GAIN
+from tethertest.conditioning.clocks.alignment import UNUSUAL_ONCE_CHOSEN, Comparison, Fit, fitted
+from tethertest.conditioning.clocks.correlation import APART, LARGEST_GAIN, SMALLEST_GAIN
 from tethertest.records.arrays import FloatArray
 
 #: a rival is out when its misfit exceeds the best one's by this many standard deviations of the difference

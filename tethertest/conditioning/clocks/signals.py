@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tethertest.conditioning.alignment import Pair
-from tethertest.conditioning.uniform import LOW_PASS, Signal, uniform
+from tethertest.conditioning.clocks.alignment import Pair
+from tethertest.conditioning.clocks.uniform import LOW_PASS, Signal, uniform
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Flag
 from tethertest.records.rig import Rig

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tethertest.conditioning.pattern import GAIN_SPREAD, MOTION_SHARE, Pattern, coarse, learnt
-from tethertest.conditioning.peak_ghosts import stray, unmoved
+from tethertest.conditioning.gratings.pattern import GAIN_SPREAD, MOTION_SHARE, Pattern, coarse, learnt
+from tethertest.conditioning.gratings.spurious_peaks import stray, unmoved
 from tethertest.records.arrays import BoolArray, FloatArray
 
 #: capture ranges that touch do not overlap

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tethertest.conditioning.pattern import LEAST_GAIN, TELLING, Pattern
+from tethertest.conditioning.gratings.pattern import LEAST_GAIN, TELLING, Pattern
 from tethertest.records.arrays import BoolArray, FloatArray
 
 #: a peak this near to one that no grating owns [m], within this time [s], is taken for the same

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tethertest.conditioning.mapping import is_grating
-from tethertest.conditioning.peak_owners import NONE, Owners, owners
+from tethertest.conditioning.gratings.peak_assignment import NONE, Owners, owners
+from tethertest.conditioning.timestamps.mapping import is_grating
 from tethertest.records.channel import Channel, Finding, Flag, Severity
 from tethertest.records.rig import Rig, Sensor
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tethertest.conditioning.alignment import Pair
-from tethertest.conditioning.uniform import LOW_PASS
+from tethertest.conditioning.clocks.alignment import Pair
+from tethertest.conditioning.clocks.uniform import LOW_PASS
 from tethertest.records.arrays import FloatArray
 
 #: a bin of the spectrum is signal when its power is this many times the noise's: by chance one in 2e5 is

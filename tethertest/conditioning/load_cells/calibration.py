@@ -8,7 +8,7 @@ from math import hypot
 
 import numpy as np
 
-from tethertest.conditioning.calibration_curves import Curve, curve_of
+from tethertest.conditioning.load_cells.calibration_curves import Curve, curve_of
 from tethertest.errors import DataError
 from tethertest.records.channel import Channel, Finding, Flag, Severity
 from tethertest.records.rig import Rig, Sensor

@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from tethertest.conditioning.alignment import Comparison, IntegerArray, Pair, levels
-from tethertest.conditioning.uniform import Signal
+from tethertest.conditioning.clocks.alignment import Comparison, IntegerArray, Pair, levels
+from tethertest.conditioning.clocks.uniform import Signal
 from tethertest.records.arrays import FloatArray
 
 ComplexArray: TypeAlias = npt.NDArray[np.complex128]

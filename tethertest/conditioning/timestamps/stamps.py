@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tethertest.conditioning.stamp_steps import (
+from tethertest.conditioning.timestamps.stamp_steps import (
     DUPLICATE_FRACTION,
     GAP_STEPS,
     EvenRows,

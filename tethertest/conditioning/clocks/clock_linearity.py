@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tethertest.conditioning.alignment import Comparison, Fit
-from tethertest.conditioning.coloured import noise_of
+from tethertest.conditioning.clocks.alignment import Comparison, Fit
+from tethertest.conditioning.clocks.coloured import noise_of
 from tethertest.records.arrays import FloatArray
 
 #: a span whose own delay is worse than this says nothing about the clock [s]

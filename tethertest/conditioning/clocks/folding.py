@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tethertest.conditioning.alignment import Pair
-from tethertest.conditioning.uniform import LOW_PASS, Signal
+from tethertest.conditioning.clocks.alignment import Pair
+from tethertest.conditioning.clocks.uniform import LOW_PASS, Signal
 from tethertest.signal.filters import moving_mean
 
 #: an instrument follows up to this share of its rate

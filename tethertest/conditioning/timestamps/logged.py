@@ -8,11 +8,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from tethertest.conditioning.gratings import assigned
-from tethertest.conditioning.jumps import without_jumps
-from tethertest.conditioning.mapping import Pairing, is_grating, paired
-from tethertest.conditioning.stamps import Stamps, audit_stamps
-from tethertest.conditioning.starts import start_after
+from tethertest.conditioning.gratings.assignment import assigned
+from tethertest.conditioning.timestamps.jumps import without_jumps
+from tethertest.conditioning.timestamps.mapping import Pairing, is_grating, paired
+from tethertest.conditioning.timestamps.stamps import Stamps, audit_stamps
+from tethertest.conditioning.timestamps.starts import start_after
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Finding, Flag, RawLog, Severity, Source
 from tethertest.records.run import Log, Run

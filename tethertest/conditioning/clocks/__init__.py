@@ -1,0 +1,1 @@
+"""Clocks: what two instruments saw alike, and offset and drift between them."""

@@ -1,0 +1,1 @@
+"""Gratings: whose peak is whose, and wavelengths as strain and temperature."""

@@ -1,0 +1,1 @@
+"""Load cells: calibration, and zeros from the rest windows."""

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tethertest.conditioning import condition
-from tethertest.conditioning.flags.plateaus import plateaus_of, with_plateaus_flagged
+from tethertest.conditioning.flags.stuck_saturated import plateaus_of, with_plateaus_flagged
 from tethertest.conditioning.timestamps.stamps import audit_stamps
 from tethertest.errors import DataError, TethertestError
 from tethertest.pipeline.evaluation import read_logs, rig_priors

@@ -12,11 +12,11 @@ from tethertest.conditioning.clocks.shared_clocks import shared_clock_findings
 from tethertest.conditioning.cross_check import cross_findings, gains
 from tethertest.conditioning.flags.hum import with_hum_flagged
 from tethertest.conditioning.flags.limits import flag_findings, sensor_of, with_excludes, with_range_flagged
-from tethertest.conditioning.flags.negative_tension import pushing_findings
-from tethertest.conditioning.flags.plateaus import with_plateaus_flagged
+from tethertest.conditioning.flags.negative_tension import negative_tension_findings
 from tethertest.conditioning.flags.plausible import check_alive, check_range, check_rate, hole_findings
 from tethertest.conditioning.flags.spikes import with_spikes_flagged
 from tethertest.conditioning.flags.steps import with_steps_flagged
+from tethertest.conditioning.flags.stuck_saturated import with_plateaus_flagged
 from tethertest.conditioning.inertia import cable_inertia
 from tethertest.conditioning.load_cells.calibration import calibrated
 from tethertest.conditioning.rest import RunWindows, windows_of
@@ -65,7 +65,7 @@ def condition(run: Run, logs: Mapping[str, RawLog], priors: RigPriors) -> Condit
     windows = windows_of(run, channels, priors.drive_frequency)
     findings += windows.findings
     channels, found = finished(with_steps_flagged(channels), run.rig, priors, windows)
-    findings += (*found, *pushing_findings(channels, run.rig))
+    findings += (*found, *negative_tension_findings(channels, run.rig))
     channels, found = _within_limits(channels, run.rig, priors, windows)
     findings += found
     channels, found = with_excludes(channels, run)

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from tethertest.conditioning.flags.plateaus import with_plateaus_flagged
 from tethertest.conditioning.flags.spikes import with_spikes_flagged
+from tethertest.conditioning.flags.stuck_saturated import with_plateaus_flagged
 from tethertest.conditioning.timestamps.logged import with_same_times
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Flag

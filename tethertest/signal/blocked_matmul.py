@@ -16,7 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 SLAB = 128
 
 
-def tall_cross(left: FloatArray, right: FloatArray) -> FloatArray:
+def blocked_cross(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return ``left.T @ right`` (p, q) of (n, p) and (n, q), or (p,) for a right side (n,)."""
     columns = right if right.ndim == 2 else right[:, None]
     slabs = left.shape[0] // SLAB
@@ -27,7 +27,7 @@ def tall_cross(left: FloatArray, right: FloatArray) -> FloatArray:
     return product if right.ndim == 2 else product[:, 0]
 
 
-def tall_times(left: FloatArray, right: FloatArray) -> FloatArray:
+def blocked_times(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return ``left @ right`` (n, q) of (n, p) and (p, q), or (n,) for a right side (p,)."""
     columns = right if right.ndim == 2 else right[:, None]
     slabs = left.shape[0] // SLAB

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from tethertest.signal.blocked_matmul import tall_cross, tall_times
+from tethertest.signal.blocked_matmul import blocked_cross, blocked_times
 from tethertest.signal.blocks import Blocks
 
 FloatArray = npt.NDArray[np.float64]
@@ -42,22 +42,24 @@ class SinusoidFit:
     def pair_influence(self, indices: Sequence[int]) -> FloatArray:
         """Return the rows (2 len(indices), b) that give a, b of these frequencies from the values."""
         rows = [self.trend + 2 * index + part for index in indices for part in (0, 1)]
-        product: FloatArray = (tall_times(self.design, self.inverse[:, rows]) * self.weights[:, None]).T
+        product: FloatArray = (blocked_times(self.design, self.inverse[:, rows]) * self.weights[:, None]).T
         return product
 
     def without_trace(self, column: FloatArray) -> FloatArray:
         """Return a column (b,) or columns (b, m) with every fitted column projected out."""
         weighted = column * (self.weights if column.ndim == 1 else self.weights[:, None])
-        left: FloatArray = column - tall_times(self.design, self.inverse @ tall_cross(self.design, weighted))
+        left: FloatArray = column - blocked_times(
+            self.design, self.inverse @ blocked_cross(self.design, weighted)
+        )
         return left
 
     def extended(self, frequency: float, pair: FloatArray) -> SinusoidFit:
         """Return the fit with one more frequency, its columns (b, 2) given: exact, and nothing refitted."""
         weighted = pair * self.weights[:, None]
-        shared = self.inverse @ tall_cross(self.design, weighted)
-        left = pair - tall_times(self.design, shared)
-        own = np.linalg.inv(tall_cross(left, left * self.weights[:, None]))
-        added = own @ tall_cross(weighted, self.residuals)
+        shared = self.inverse @ blocked_cross(self.design, weighted)
+        left = pair - blocked_times(self.design, shared)
+        own = np.linalg.inv(blocked_cross(left, left * self.weights[:, None]))
+        added = own @ blocked_cross(weighted, self.residuals)
         inverse = np.block([[self.inverse + shared @ own @ shared.T, -shared @ own], [-own @ shared.T, own]])
         return SinusoidFit(
             np.append(self.frequencies, frequency),
@@ -146,13 +148,13 @@ def fit_sinusoids(
         message = f"{np.count_nonzero(blocks.weights)} blocks for {design.shape[1]} coefficients"
         raise ValueError(message)
     weighted = design * blocks.weights[:, None]
-    normal = tall_cross(design, weighted)
+    normal = blocked_cross(design, weighted)
     inverse = np.asarray(np.linalg.inv(normal), dtype=np.float64)
     if not np.max(np.diag(normal) * np.diag(inverse)) < _INFLATED:
         message = "the samples do not tell the frequencies apart: holes at even steps fold them on each other"
         raise ValueError(message)
-    coefficients = inverse @ tall_cross(weighted, blocks.values)
-    residuals = np.where(blocks.weights > 0.0, blocks.values - tall_times(design, coefficients), 0.0)
+    coefficients = inverse @ blocked_cross(weighted, blocks.values)
+    residuals = np.where(blocks.weights > 0.0, blocks.values - blocked_times(design, coefficients), 0.0)
     return SinusoidFit(
         np.asarray(frequencies, dtype=np.float64),
         origin,

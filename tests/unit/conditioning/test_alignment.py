@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tethertest.conditioning.clocks.alignment import Comparison, Pair, fitted
+from tethertest.conditioning.clocks.alignment import AlignmentSignals, ClockAlignment, fitted
 from tethertest.conditioning.clocks.band import best_cutoff
 from tethertest.conditioning.clocks.clock_linearity import delays, worst
 from tethertest.conditioning.clocks.correlation import scanned
@@ -29,7 +29,9 @@ def driven(time: np.ndarray, start: float = 8.0, ramp: float = 3.0) -> np.ndarra
     return np.cos(2.0 * np.pi * FREQUENCY * turned)
 
 
-def pair(seed: int, *, rates=(200.0, 50.0), start: float = 8.0, jump: float = 0.0, noise=NOISE) -> Pair:
+def pair(
+    seed: int, *, rates=(200.0, 50.0), start: float = 8.0, jump: float = 0.0, noise=NOISE
+) -> AlignmentSignals:
     random = np.random.default_rng(seed)
     signals = []
     for rate, (offset, drift) in zip(rates, ((0.0, 0.0), (OFFSET, DRIFT)), strict=True):
@@ -39,14 +41,14 @@ def pair(seed: int, *, rates=(200.0, 50.0), start: float = 8.0, jump: float = 0.
         if offset:
             time = time + jump * (true > 35.0)
         signals.append(uniform(Channel("s", "tension", "N", time, values, np.zeros(true.size, np.uint16))))
-    return Pair(signals[0], signals[1])
+    return AlignmentSignals(signals[0], signals[1])
 
 
-def comparison(records: Pair, cutoff: float) -> Comparison:
-    return Comparison(records.low_passed(cutoff), SPANS, 0.03, cutoff, 0.0)
+def comparison(records: AlignmentSignals, cutoff: float) -> ClockAlignment:
+    return ClockAlignment(records.low_passed(cutoff), SPANS, 0.03, cutoff, 0.0)
 
 
-def found(records: Pair):
+def found(records: AlignmentSignals):
     cutoff = best_cutoff(records, FREQUENCY)
     compared = comparison(records, cutoff)
     scan = scanned(compared, records.low_passed(cutoff), 1e-4, 0.03, cutoff)
@@ -78,9 +80,9 @@ def test_what_the_rig_does_not_know_widens_the_offset_by_the_delay_it_makes():
     records = pair(3).low_passed(4.0)
     clock = records.clock
     late = -5e-3 * np.gradient(clock.values, clock.step)
-    plain = fitted(Comparison(records, SPANS, 0.03, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
+    plain = fitted(ClockAlignment(records, SPANS, 0.03, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
     unsure = fitted(
-        Comparison(Pair(records.reference, clock, (late,)), SPANS, 0.03, 4.0, 0.0),
+        ClockAlignment(AlignmentSignals(records.reference, clock, (late,)), SPANS, 0.03, 4.0, 0.0),
         (OFFSET, DRIFT),
         PRIOR,
         4.0,
@@ -122,8 +124,8 @@ def test_drift_is_found_from_a_start_that_knows_none():
     flags = np.zeros(true.size, np.uint16)
     noisy = [driven(true) + NOISE * random.standard_normal(true.size) for _ in range(2)]
     clock = uniform(Channel("c", "tension", "N", 1.0001 * true - 2.0, noisy[1], flags))
-    records = Pair(uniform(Channel("r", "tension", "N", true, noisy[0], flags)), clock)
-    compared = Comparison(records.low_passed(4.0), ((0.0, 590.0),), 0.03, 4.0, 0.0)
+    records = AlignmentSignals(uniform(Channel("r", "tension", "N", true, noisy[0], flags)), clock)
+    compared = ClockAlignment(records.low_passed(4.0), ((0.0, 590.0),), 0.03, 4.0, 0.0)
     offset, drift = scanned(compared, records.low_passed(4.0), 1e-4, 0.03, 4.0).candidates(1)[0]
     assert (offset, drift) == pytest.approx((-2.0, 1e-4), abs=0.02)
     assert drift == pytest.approx(1e-4, abs=3e-5)
@@ -180,7 +182,9 @@ def knocked(rate: float) -> Signal:
 @pytest.mark.parametrize("slower", ["reference", "clock"])
 def test_knocks_that_one_record_folds_are_not_compared(slower):
     fast, slow = knocked(400.0), knocked(25.0)
-    pair = without_folding(Pair(slow, fast) if slower == "reference" else Pair(fast, slow))
+    pair = without_folding(
+        AlignmentSignals(slow, fast) if slower == "reference" else AlignmentSignals(fast, slow)
+    )
     kept = pair.clock if slower == "reference" else pair.reference
     left = kept.time[~kept.usable & (kept.time > 0.5) & (kept.time < LENGTH - 0.5)]
     assert 2.8 < left.min() < 3.0
@@ -191,7 +195,7 @@ def test_knocks_that_one_record_folds_are_not_compared(slower):
 
 
 def test_nothing_is_taken_from_records_that_follow_the_knocks():
-    pair = Pair(knocked(400.0), knocked(100.0))
+    pair = AlignmentSignals(knocked(400.0), knocked(100.0))
     assert without_folding(pair) is pair
 
 
@@ -199,7 +203,7 @@ def test_a_timing_error_of_each_span_averages_over_the_spans():
     """Seven spans of steady drive with 10 ms each: 10 ms / sqrt(7) where the drift is known."""
     records = pair(3, start=-100.0).low_passed(4.0)
     sure, unsure = (
-        fitted(Comparison(records, SPANS, 0.0, 4.0, systematic), (OFFSET, DRIFT), 1e-9, 4.0)
+        fitted(ClockAlignment(records, SPANS, 0.0, 4.0, systematic), (OFFSET, DRIFT), 1e-9, 4.0)
         for systematic in (0.0, 0.01)
     )
     added = np.sqrt(unsure.covariance[0, 0] - sure.covariance[0, 0])
@@ -211,18 +215,22 @@ def test_what_is_slow_in_one_record_only_moves_no_offset():
     records = pair(3).low_passed(4.0)
     time = records.clock.time
     warming = 0.8 * np.cos(np.pi * (time - time[0]) / (time[-1] - time[0])) + 0.02 * (time - 30.0)
-    warmed = Pair(records.reference, replace(records.clock, values=records.clock.values + warming))
+    warmed = AlignmentSignals(
+        records.reference, replace(records.clock, values=records.clock.values + warming)
+    )
     plain, bent = (
-        fitted(Comparison(item, SPANS, 0.03, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
+        fitted(ClockAlignment(item, SPANS, 0.03, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
         for item in (records, warmed)
     )
     assert bent.offset == pytest.approx(plain.offset, abs=2e-4)
     assert bent.explained == pytest.approx(plain.explained, abs=0.2)
     # where only spans are compared each has a level of its own
     stairs = 3.0 * np.searchsorted([stop for _, stop in SPANS], time)
-    stepped = Pair(records.reference, replace(records.clock, values=records.clock.values + stairs))
+    stepped = AlignmentSignals(
+        records.reference, replace(records.clock, values=records.clock.values + stairs)
+    )
     plain, bent = (
-        fitted(Comparison(item, SPANS, 0.0, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
+        fitted(ClockAlignment(item, SPANS, 0.0, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
         for item in (records, stepped)
     )
     assert bent.offset == pytest.approx(plain.offset, abs=1e-4)
@@ -231,8 +239,10 @@ def test_what_is_slow_in_one_record_only_moves_no_offset():
 @pytest.mark.parametrize("rates", [(200.0, 50.0), (40.0, 300.0)])
 def test_the_gain_is_that_of_the_reference_over_the_clock(rates):
     records = pair(3, rates=rates).low_passed(4.0)
-    doubled = Pair(replace(records.reference, values=2.0 * records.reference.values), records.clock)
-    line = fitted(Comparison(doubled, SPANS, 0.03, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
+    doubled = AlignmentSignals(
+        replace(records.reference, values=2.0 * records.reference.values), records.clock
+    )
+    line = fitted(ClockAlignment(doubled, SPANS, 0.03, 4.0, 0.0), (OFFSET, DRIFT), PRIOR, 4.0)
     assert line.gain == pytest.approx(2.0, rel=0.01)
     assert line.explained > 0.99
 

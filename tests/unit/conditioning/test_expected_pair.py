@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tethertest.conditioning.clocks.signals import expected_pair
+from tethertest.conditioning.clocks.signals import expected_signals
 from tethertest.records.channel import Channel, Flag
 
 STEP, WORN = 2e-3, 0.04
@@ -22,7 +22,7 @@ def unknown(hole: int = 0, at_rest: tuple[bool, bool] = (True, True)) -> np.ndar
     lost = (np.arange(TIME.size) >= 4000) & (np.arange(TIME.size) < 4000 + hole)
     heave = channel("displacement", "m").with_flags(lost, Flag.MISSING)
     tension = channel("tension", "N")
-    found = expected_pair(tension, heave, 500.0, tension, 50.0, (), at_rest=at_rest)
+    found = expected_signals(tension, heave, 500.0, tension, 50.0, (), at_rest=at_rest)
     assert found is not None
     lacking = found.clock.time[~found.clock.usable]
     # the low-pass wears the very ends of any record

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tethertest.signal.blocked_matmul import tall_cross, tall_times
+from tethertest.signal.blocked_matmul import blocked_cross, blocked_times
 from tethertest.signal.blocks import block_means
 from tethertest.signal.filters import moving_mean, without_line
 from tethertest.signal.noise import quantum, white_noise
@@ -183,8 +183,8 @@ def test_products_slab_by_slab_are_the_products() -> None:
     random = np.random.default_rng(5)
     for rows in (5, 128, 300):
         left, right = random.standard_normal((rows, 3)), random.standard_normal((rows, 2))
-        assert tall_cross(left, right) == pytest.approx(left.T @ right)
-        assert tall_cross(left, right[:, 0]) == pytest.approx(left.T @ right[:, 0])
+        assert blocked_cross(left, right) == pytest.approx(left.T @ right)
+        assert blocked_cross(left, right[:, 0]) == pytest.approx(left.T @ right[:, 0])
         small = random.standard_normal((3, 2))
-        assert tall_times(left, small) == pytest.approx(left @ small)
-        assert tall_times(left, small[:, 0]) == pytest.approx(left @ small[:, 0])
+        assert blocked_times(left, small) == pytest.approx(left @ small)
+        assert blocked_times(left, small[:, 0]) == pytest.approx(left @ small[:, 0])

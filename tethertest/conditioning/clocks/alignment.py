@@ -34,7 +34,7 @@ UNUSUAL, UNUSUAL_ONCE_CHOSEN = 4.0, 1.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Pair:
+class AlignmentSignals:
     """One physical signal on two clocks, filtered alike."""
 
     reference: Signal
@@ -43,11 +43,11 @@ class Pair:
         FloatArray, ...
     ] = ()  #: (n,) each: one standard uncertainty's change of the clock's signal
 
-    def low_passed(self, cutoff: float) -> Pair:
+    def low_passed(self, cutoff: float) -> AlignmentSignals:
         """Return both below a frequency."""
         clock = self.clock
         slow = tuple(replace(clock, values=change).low_passed(cutoff).values for change in self.changes)
-        return Pair(self.reference.low_passed(cutoff), clock.low_passed(cutoff), slow)
+        return AlignmentSignals(self.reference.low_passed(cutoff), clock.low_passed(cutoff), slow)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +82,7 @@ class Fit:
     scale: float  #: of the noise over the residual
 
 
-class Comparison:
+class ClockAlignment:
     """A pair prepared for looking up: the slower record's samples, and a cubic through the faster one.
 
     Where nothing but spans is compared, the clock's record stands for the slower one.
@@ -91,7 +91,7 @@ class Comparison:
 
     Parameters
     ----------
-    pair : Pair
+    pair : AlignmentSignals
         The signals, low-passed.
     spans : tuple
         Spans of the clock's own time [s].
@@ -105,7 +105,12 @@ class Comparison:
     """
 
     def __init__(
-        self, pair: Pair, spans: tuple[Span, ...], slowest: float, cutoff: float, systematic: float
+        self,
+        pair: AlignmentSignals,
+        spans: tuple[Span, ...],
+        slowest: float,
+        cutoff: float,
+        systematic: float,
     ) -> None:
         # spans of the clock's time hold the same samples of the clock at every offset
         self.swapped = slowest > 0.0 and pair.reference.step > pair.clock.step
@@ -204,7 +209,7 @@ def levels(time: FloatArray, slowest: float) -> FloatArray:
 
 
 def fitted(
-    comparison: Comparison,
+    comparison: ClockAlignment,
     start: tuple[float, float],
     prior: float,
     cutoff: float,
@@ -215,7 +220,7 @@ def fitted(
 
     Parameters
     ----------
-    comparison : Comparison
+    comparison : ClockAlignment
         The records.
     start : tuple of float
         Offset [s] and drift to start from.
@@ -261,7 +266,7 @@ def fitted(
 
 
 def _step(
-    comparison: Comparison,
+    comparison: ClockAlignment,
     offset: float,
     drift: float,
     prior: float,

@@ -8,15 +8,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from tethertest.conditioning.clocks.alignment import Pair
+from tethertest.conditioning.clocks.alignment import AlignmentSignals
 from tethertest.conditioning.clocks.folding import without_folding
 from tethertest.conditioning.clocks.signals import (
     MOTION_STEP,
     TAP_HIGH_PASS,
-    expected_pair,
+    expected_signals,
     handed_over,
-    strain_pair,
-    tap_pair,
+    strain_signals,
+    tap_signals,
 )
 from tethertest.conditioning.clocks.taps import tap_spans
 from tethertest.conditioning.rig_priors import UNSTATED_DAMPING_TIME, RigPriors
@@ -45,10 +45,10 @@ THINNED = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Comparable:
+class AlignmentTask:
     """A clock's signal beside the reference's, and where to compare."""
 
-    pair: Pair
+    pair: AlignmentSignals
     spans: tuple[Span, ...]
     slowest: float  #: the records differ below this [Hz]; 0 where nothing but the spans is compared
     drive: float  #: frequency of the drive [Hz], or of what else must be in the band
@@ -59,9 +59,9 @@ class Comparable:
     remarks: tuple[str, ...] = ()
 
 
-def comparables(
+def alignment_tasks(
     channels: Sequence[Channel], reference: Sequence[Channel], run: Run, priors: RigPriors
-) -> Iterator[Comparable | str]:
+) -> Iterator[AlignmentTask | str]:
     """Yield what can be compared, the best first, or why nothing can.
 
     Parameters
@@ -93,8 +93,8 @@ def comparables(
 
 def _by_strain(
     gratings: Sequence[Channel], tensions: Sequence[Channel], run: Run, mains: float, drive: float | None
-) -> Comparable | str:
-    pair = strain_pair(gratings, tensions, run.rig, mains)
+) -> AlignmentTask | str:
+    pair = strain_signals(gratings, tensions, run.rig, mains)
     if isinstance(pair, str):
         return pair
     slowest = _slowest(drive)
@@ -106,7 +106,7 @@ def _by_strain(
         own = FOLDED_KNOCK / sampled
     lag = run.rig.cable.axial_damping_time or 0.0
     error = run.rig.uncertainty.get("cable.axial_damping_time", UNSTATED_DAMPING_TIME)
-    return Comparable(
+    return AlignmentTask(
         pair,
         _cut(pair.clock.time),
         slowest,
@@ -125,7 +125,7 @@ def _by_motion(
     priors: RigPriors,
     expected_tension: Callable[[Channel], Channel],
     drive: float | None,
-) -> Iterator[Comparable | str]:
+) -> Iterator[AlignmentTask | str]:
     rest = find_rest(heave)
     taps = tap_spans(heave, rest)
     start = heave if rest.before is None else heave.between(*rest.before)
@@ -133,7 +133,7 @@ def _by_motion(
     expected = expected_tension(height)
     changes = _changes(height, priors)
     at_rest = (rest.before is not None, rest.after is not None)
-    pair = expected_pair(expected, height, heave.rate, bottom, priors.mains, changes, at_rest=at_rest)
+    pair = expected_signals(expected, height, heave.rate, bottom, priors.mains, changes, at_rest=at_rest)
     if pair is None:
         yield "holes leave no stretch of the bottom displacement long enough for the rig to settle"
         return
@@ -141,12 +141,12 @@ def _by_motion(
     taps = taps if sampled >= TAP_RATE else ()
     if taps:
         method = f"tension expected from the bottom's motion against bottom tension, {len(taps)} taps at rest"
-        yield Comparable(tap_pair(pair), taps, 0.0, TAP_HIGH_PASS, 0.0, 0.0, TAP_SPAN, method)
+        yield AlignmentTask(tap_signals(pair), taps, 0.0, TAP_HIGH_PASS, 0.0, 0.0, TAP_SPAN, method)
     if not taps or drive is not None:
         method = "tension expected from the bottom's motion against bottom tension, start to stop"
         pair = pair if drive is None else without_folding(pair)
         remark = "no marker tap: the drive's own phase enters, so the phases compared are not independent"
-        yield Comparable(
+        yield AlignmentTask(
             pair, _cut(pair.clock.time), _slowest(drive), drive or 0.0, 0.0, 0.0, 0.0, method, (remark,)
         )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tethertest.conditioning.clocks.alignment import Pair
+from tethertest.conditioning.clocks.alignment import AlignmentSignals
 from tethertest.conditioning.clocks.uniform import LOW_PASS
 from tethertest.records.arrays import FloatArray
 
@@ -17,7 +17,7 @@ NYQUIST_SHARE = 0.33
 LOWEST, RATIO = 1.0, 1.3
 
 
-def best_cutoff(pair: Pair, slowest: float) -> float:
+def best_cutoff(pair: AlignmentSignals, slowest: float) -> float:
     """Return the upper end of the band [Hz].
 
     Noise in the slope of the record that is looked up adds to the variance of the delay, in proportion to the
@@ -25,7 +25,7 @@ def best_cutoff(pair: Pair, slowest: float) -> float:
 
     Parameters
     ----------
-    pair : Pair
+    pair : AlignmentSignals
         Both records up to `LOW_PASS`.
     slowest : float
         Lower end of the band [Hz].
@@ -43,7 +43,7 @@ def best_cutoff(pair: Pair, slowest: float) -> float:
     return float(cutoffs[int(np.argmin(scores))]) if np.isfinite(min(scores)) else float(top)
 
 
-def _powers(pair: Pair) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _powers(pair: AlignmentSignals) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return frequency and power of signal and noise per bin, by the record whose noise is white."""
     sound, other = pair.reference, pair.clock
     values = np.where(sound.usable, sound.values, 0.0)

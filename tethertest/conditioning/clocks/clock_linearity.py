@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tethertest.conditioning.clocks.alignment import Comparison, Fit
+from tethertest.conditioning.clocks.alignment import ClockAlignment, Fit
 from tethertest.conditioning.clocks.coloured import noise_of
 from tethertest.records.arrays import FloatArray
 
@@ -27,12 +27,12 @@ class Delay:
     error: float  #: standard error [s]
 
 
-def delays(comparison: Comparison, fit: Fit) -> tuple[Delay, ...]:
+def delays(comparison: ClockAlignment, fit: Fit) -> tuple[Delay, ...]:
     """Return the delay that each span has left, where it can tell.
 
     Parameters
     ----------
-    comparison : Comparison
+    comparison : ClockAlignment
         For its spans.
     fit : Fit
         The line fitted.

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from tethertest.conditioning.clocks.alignment import Comparison, IntegerArray, Pair, levels
+from tethertest.conditioning.clocks.alignment import AlignmentSignals, ClockAlignment, IntegerArray, levels
 from tethertest.conditioning.clocks.uniform import Signal
 from tethertest.records.arrays import FloatArray
 
@@ -66,15 +66,15 @@ class Scan:
 
 
 def scanned(
-    comparison: Comparison, pair: Pair, believable_drift: float, slowest: float, cutoff: float
+    comparison: ClockAlignment, pair: AlignmentSignals, believable_drift: float, slowest: float, cutoff: float
 ) -> Scan:
     """Fit the gain at every offset of a grid, by correlation.
 
     Parameters
     ----------
-    comparison : Comparison
+    comparison : ClockAlignment
         For its spans.
-    pair : Pair
+    pair : AlignmentSignals
         Both records in the band that is compared.
     believable_drift : float
         Largest drift [1]: over a long record it moves the ends apart.

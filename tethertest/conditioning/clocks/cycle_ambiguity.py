@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tethertest.conditioning.clocks.alignment import UNUSUAL_ONCE_CHOSEN, Comparison, Fit, fitted
+from tethertest.conditioning.clocks.alignment import UNUSUAL_ONCE_CHOSEN, ClockAlignment, Fit, fitted
 from tethertest.conditioning.clocks.correlation import APART, LARGEST_GAIN, SMALLEST_GAIN
 from tethertest.records.arrays import FloatArray
 
@@ -25,7 +25,7 @@ PASSES = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Rival:
+class OffsetCandidate:
     """Another offset."""
 
     offset: float  #: [s]
@@ -33,13 +33,13 @@ class Rival:
 
 
 def chosen(
-    comparison: Comparison, starts: list[tuple[float, float]], prior: float, cutoff: float
-) -> tuple[Fit, tuple[Rival, ...]] | None:
+    comparison: ClockAlignment, starts: list[tuple[float, float]], prior: float, cutoff: float
+) -> tuple[Fit, tuple[OffsetCandidate, ...]] | None:
     """Return the best fit among candidates, and the rivals that the data do not exclude.
 
     Parameters
     ----------
-    comparison : Comparison
+    comparison : ClockAlignment
         The records.
     starts : list of tuple
         Offset [s] and drift of every candidate, the best first.
@@ -75,11 +75,11 @@ def chosen(
             continue
         sigmas, ratio, share = _worse(line, other, comparison.weights([line, other]))
         if sigmas < DECISIVE or ratio < DISTINCT or share < LEAST_SHARE:
-            rivals.append(Rival(other.offset, sigmas))
+            rivals.append(OffsetCandidate(other.offset, sigmas))
     return line, tuple(sorted(rivals, key=lambda item: item.sigmas))
 
 
-def _unlikely(comparison: Comparison, fit: Fit) -> float:
+def _unlikely(comparison: ClockAlignment, fit: Fit) -> float:
     """Return minus the logarithm of the likelihood per sample, each span with a variance of its own."""
     number = comparison.numbers(fit.at)
     inside = fit.use & (number >= 0)

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tethertest.conditioning.clocks.alignment import Comparison
-from tethertest.conditioning.clocks.alignment_tasks import Comparable, comparables
+from tethertest.conditioning.clocks.alignment import ClockAlignment
+from tethertest.conditioning.clocks.alignment_tasks import AlignmentTask, alignment_tasks
 from tethertest.conditioning.clocks.band import best_cutoff
 from tethertest.conditioning.clocks.clock_linearity import Delay, delays, worst
 from tethertest.conditioning.clocks.correlation import SEARCH, scanned
-from tethertest.conditioning.clocks.cycle_ambiguity import Rival, chosen
+from tethertest.conditioning.clocks.cycle_ambiguity import OffsetCandidate, chosen
 from tethertest.conditioning.rig_priors import RigPriors
 from tethertest.records.channel import Channel, ClockFit, Finding, Severity
 from tethertest.records.run import Run
@@ -64,8 +64,8 @@ def fitted_clock(
         )
         return fit, (Finding(clock, "clock_override", text, Severity.NOTE),)
     refused: list[tuple[ClockFit, tuple[Finding, ...]]] = []
-    for comparable in comparables(channels, reference, run, priors):
-        fit, findings = _compared(clock, comparable, priors, believable)
+    for task in alignment_tasks(channels, reference, run, priors):
+        fit, findings = _compared(clock, task, priors, believable)
         if not any(item.severity == Severity.FATAL for item in findings):
             return fit, findings
         refused.append((fit, findings))
@@ -78,40 +78,40 @@ def identity(clock: str) -> ClockFit:
 
 
 def _compared(
-    clock: str, comparable: Comparable | str, priors: RigPriors, believable: float
+    clock: str, task: AlignmentTask | str, priors: RigPriors, believable: float
 ) -> tuple[ClockFit, tuple[Finding, ...]]:
     """Return the fit of one comparison and what is to be said of it."""
-    if isinstance(comparable, str):
-        return _unplaced(clock, priors, believable, comparable, 0.0)
-    cutoff = best_cutoff(comparable.pair, comparable.drive)
-    pair = comparable.pair.low_passed(cutoff)
-    comparison = Comparison(pair, comparable.spans, comparable.slowest, cutoff, comparable.systematic)
+    if isinstance(task, str):
+        return _unplaced(clock, priors, believable, task, 0.0)
+    cutoff = best_cutoff(task.pair, task.drive)
+    pair = task.pair.low_passed(cutoff)
+    comparison = ClockAlignment(pair, task.spans, task.slowest, cutoff, task.systematic)
     if not pair.clock.usable.any() or not pair.reference.usable.any():
-        text = f"no samples are left to compare: {comparable.method}"
+        text = f"no samples are left to compare: {task.method}"
         return _unplaced(clock, priors, believable, text, 0.0)
-    scan = scanned(comparison, pair, believable, comparable.slowest, cutoff)
+    scan = scanned(comparison, pair, believable, task.slowest, cutoff)
     prior = believable / np.sqrt(3.0)
     found = chosen(comparison, scan.candidates(MOST), prior, cutoff)
     if found is None or found[0].explained < EXPLAINED:
         share = "nothing" if found is None else f"{100.0 * found[0].explained:.0f} %"
-        text = f"the best offset explains {share} of the signal: {comparable.method}"
+        text = f"the best offset explains {share} of the signal: {task.method}"
         return _unplaced(clock, priors, believable, text, 0.0)
     line, rivals = found
     left = delays(comparison, line)
     error = np.sqrt(np.diag(line.covariance))
     if error[0] > USELESS:
-        text = f"the record tells the offset to no better than {1e3 * error[0]:.0f} ms: {comparable.method}"
+        text = f"the record tells the offset to no better than {1e3 * error[0]:.0f} ms: {task.method}"
         return _unplaced(clock, priors, believable, text, line.offset)
     fit = ClockFit(
         clock,
         priors.reference_clock,
-        float(line.offset - comparable.lag),
-        float(np.hypot(error[0], comparable.lag_error)),
+        float(line.offset - task.lag),
+        float(np.hypot(error[0], task.lag_error)),
         float(line.drift),
         float(error[1]),
-        comparable.method,
+        task.method,
         (
-            *comparable.remarks,
+            *task.remarks,
             f"{len(left)} spans, {100.0 * line.explained:.1f} % explained below {cutoff:.3g} Hz",
         ),
     )
@@ -142,7 +142,7 @@ def _remedy(clock: str) -> str:
 
 
 def _judged(
-    clock: str, fit: ClockFit, rivals: Sequence[Rival], left: Delay | None, believable: float
+    clock: str, fit: ClockFit, rivals: Sequence[OffsetCandidate], left: Delay | None, believable: float
 ) -> tuple[Finding, ...]:
     found: list[Finding] = []
     if abs(fit.offset) > SEARCH:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tethertest.conditioning.clocks.alignment import Pair
+from tethertest.conditioning.clocks.alignment import AlignmentSignals
 from tethertest.conditioning.clocks.uniform import LOW_PASS, Signal
 from tethertest.signal.filters import moving_mean
 
@@ -18,7 +18,7 @@ UNUSUAL = 16.0
 SMOOTHED = 0.25
 
 
-def without_folding(pair: Pair) -> Pair:
+def without_folding(pair: AlignmentSignals) -> AlignmentSignals:
     """Return both records, the faster one not usable where the slower one folds a knock.
 
     A knock of 60 ms and the UAV's bouncing behind it are no signal that an instrument at 30 Hz has in common
@@ -26,7 +26,7 @@ def without_folding(pair: Pair) -> Pair:
 
     Parameters
     ----------
-    pair : Pair
+    pair : AlignmentSignals
         Both records up to `LOW_PASS`.
     """
     limit = FOLLOWED * min(pair.reference.sampled, pair.clock.sampled)

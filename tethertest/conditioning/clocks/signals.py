@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tethertest.conditioning.clocks.alignment import Pair
+from tethertest.conditioning.clocks.alignment import AlignmentSignals
 from tethertest.conditioning.clocks.uniform import LOW_PASS, Signal, uniform
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Flag
@@ -32,9 +32,9 @@ LARGEST_LOSS = 0.2
 LARGEST_CELL_LOSS = 0.5
 
 
-def strain_pair(
+def strain_signals(
     gratings: Sequence[Channel], tensions: Sequence[Channel], rig: Rig, mains: float
-) -> Pair | str:
+) -> AlignmentSignals | str:
     """Return mean strain of the gratings as tension, beside the measured tension at their mean place.
 
     Parameters
@@ -51,7 +51,7 @@ def strain_pair(
 
     Returns
     -------
-    Pair or str
+    AlignmentSignals or str
         The pair, or why there is none.
     """
     stiffness = rig.cable.axial_stiffness
@@ -69,7 +69,7 @@ def strain_pair(
         return "no sample has a value of every grating to compare its clock by"
     mean = kept[0].with_values((stiffness or 1.0) * total).with_flags(~usable, Flag.MISSING)
     place = float(np.mean([channel.at or 0.0 for channel in kept]))
-    return Pair(uniform(_at_place(tensions, place), mains), uniform(mean))
+    return AlignmentSignals(uniform(_at_place(tensions, place), mains), uniform(mean))
 
 
 def handed_over(heave: Channel) -> Channel:
@@ -85,7 +85,7 @@ def handed_over(heave: Channel) -> Channel:
     return replace(heave, time=time, values=values, flags=flags)
 
 
-def expected_pair(
+def expected_signals(
     expected: Channel,
     heave: Channel,
     sampled: float,
@@ -94,7 +94,7 @@ def expected_pair(
     changes: tuple[FloatArray, ...],
     *,
     at_rest: tuple[bool, bool],
-) -> Pair | None:
+) -> AlignmentSignals | None:
     """Return the bottom tension that the motion asks for, beside the measured one.
 
     Parameters
@@ -117,7 +117,7 @@ def expected_pair(
 
     Returns
     -------
-    Pair or None
+    AlignmentSignals or None
         None where nothing is known of one of the two.
     """
     first = expected.time[0] + (0.0 if at_rest[0] else SETTLING)
@@ -128,10 +128,10 @@ def expected_pair(
         return None
     answer = replace(uniform(expected.with_flags(~known, Flag.MISSING)), sampled=sampled)
     moved = tuple(_like(answer, heave, change) for change in changes)
-    return Pair(uniform(bottom, mains), answer, moved)
+    return AlignmentSignals(uniform(bottom, mains), answer, moved)
 
 
-def tap_pair(pair: Pair) -> Pair:
+def tap_signals(pair: AlignmentSignals) -> AlignmentSignals:
     """Return what an expected pair has of taps: above the drive, without the UAV's free bouncing.
 
     An error of the bounce's frequency adds up with every period, and noise of the motion rings there.
@@ -143,7 +143,7 @@ def tap_pair(pair: Pair) -> Pair:
         for change in pair.changes
     )
     reference = pair.reference.high_passed(TAP_HIGH_PASS)
-    return Pair(_without_bounce(reference, quarter), _without_bounce(clock, quarter), changes)
+    return AlignmentSignals(_without_bounce(reference, quarter), _without_bounce(clock, quarter), changes)
 
 
 def _bounce(answer: Signal) -> float:

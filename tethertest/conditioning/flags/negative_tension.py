@@ -15,12 +15,12 @@ from tethertest.signal.passes import blocks_of
 
 #: standard uncertainty of a zero besides the channel's own: tare and drift of a cell for 100 N over a run [N]
 ZERO: Final = 0.03
-#: so many of those too low, for so long [s], is no error of the zero that is known
+#: this many of those below the limit, for this long [s], cannot be an error of the zero
 SIGMAS: Final = 5.0
 LONGEST: Final = 0.05
 
 
-def pushing_findings(channels: Sequence[Channel], rig: Rig) -> tuple[Finding, ...]:
+def negative_tension_findings(channels: Sequence[Channel], rig: Rig) -> tuple[Finding, ...]:
     """Return a fatal finding for each tension that is too low for long: what it rests at is stated too low.
 
     Parameters

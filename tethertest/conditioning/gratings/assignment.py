@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tethertest.conditioning.gratings.peak_assignment import NONE, Owners, owners
+from tethertest.conditioning.gratings.peak_assignment import NONE, Owners, assign_peaks
 from tethertest.conditioning.timestamps.mapping import is_grating
 from tethertest.records.channel import Channel, Finding, Flag, Severity
 from tethertest.records.rig import Rig, Sensor
@@ -22,7 +22,7 @@ _FIBRE = re.compile(r"^\s*CH\s*(\d+)\b", re.IGNORECASE)
 
 
 def assigned(columns: Sequence[Channel], rig: Rig) -> tuple[tuple[Channel, ...], tuple[Finding, ...]]:
-    """Give every peak of one interrogator log to its grating; see `owners` for how.
+    """Give every peak of one interrogator log to its grating; see `assign_peaks` for how.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def assigned(columns: Sequence[Channel], rig: Rig) -> tuple[tuple[Channel, ...],
     for group, sensors in _fibres(columns, gratings):
         sensors.sort(key=lambda sensor: sensor.expected or 0.0)
         peaks = np.column_stack([channel.values for channel in group])
-        found = owners(
+        found = assign_peaks(
             peaks,
             group[0].time,
             np.array([sensor.expected for sensor in sensors], dtype=float),

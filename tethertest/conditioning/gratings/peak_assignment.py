@@ -32,7 +32,7 @@ class Owners:
     doubtful: BoolArray  #: (n, g) True where a peak was there that may also be another grating's, or a ghost
 
 
-def owners(
+def assign_peaks(
     peaks: FloatArray, time: FloatArray, expected: FloatArray, capture: FloatArray, strained: BoolArray
 ) -> Owners:
     """Give peaks to gratings so that no peak is ever given to a wrong one.

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tethertest.conditioning.flags.limits import sensor_of
-from tethertest.conditioning.flags.plateaus import Plateaus, plateaus_of
 from tethertest.conditioning.flags.spikes import CONTEXT, SpikeRule
+from tethertest.conditioning.flags.stuck_saturated import Plateaus, plateaus_of
 from tethertest.conditioning.load_cells.calibration import calibrated
 from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
 from tethertest.pipeline.long_runs.record import Record

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tethertest.conditioning.flags.negative_tension import pushing_findings
+from tethertest.conditioning.flags.negative_tension import negative_tension_findings
 from tethertest.records.channel import Channel, Finding
 
 from .conftest import RIG
@@ -22,7 +22,7 @@ def found(lowest: float, at: float, lasting: float = 0.2, **changes: float) -> t
     values[np.abs(time - 4.0 - lasting - 0.02) < 0.01] = 60.0
     values += np.random.default_rng(1).normal(0.0, 0.015, time.size)
     channel = Channel("cell", "tension", "N", time, values, np.zeros(time.size, np.uint16), at)
-    return pushing_findings((replace(channel, **changes),), RIG)
+    return negative_tension_findings((replace(channel, **changes),), RIG)
 
 
 @pytest.mark.parametrize(("at", "lightest"), [(1.0, 0.0), (0.0, -WEIGHT)])

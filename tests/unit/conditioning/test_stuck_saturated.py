@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tethertest.conditioning.flags.plateaus import plateaus_of, with_plateaus_flagged
+from tethertest.conditioning.flags.stuck_saturated import plateaus_of, with_plateaus_flagged
 from tethertest.records.channel import Channel, Flag
 
 NOISE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 5.0)  #: [digits]

@@ -64,7 +64,7 @@ def test_two_tables_are_listed_and_run_toml_names_one(write, settings):
             r"time = \"tt\" is set, which the table does not have\n.*'column 1', 'column 2', 'column 3'",
         ),
         ({"columns": ("t", "F")}, "names 2 columns, 'data' has 3"),
-        ({"decimal": ","}, "gives decimal, which a JSON log does not need"),
+        ({"decimal": ","}, "decimal is set, which the reader of json logs does not use"),
     ],
 )
 def test_a_mapping_that_does_not_fit_lists_what_is_there(write, settings, keys, words):

@@ -45,7 +45,7 @@ def test_the_generic_reader_is_last():
 
 
 def test_two_claims_are_an_error_that_names_both(write, monkeypatch):
-    twin = SimpleNamespace(NAME="twin", sniff=lambda head: "it looks like mine", read=None)
+    twin = SimpleNamespace(NAME="twin", USES=frozenset(), sniff=lambda head: "it looks like mine", read=None)
     monkeypatch.setattr(registry, "READERS", (twin, *READERS))
     path = write(LVM_HEAD)
     with pytest.raises(FileFormatError, match=r"more than one reader claims.*'twin'.*'lvm'"):
@@ -53,7 +53,7 @@ def test_two_claims_are_an_error_that_names_both(write, monkeypatch):
 
 
 def test_the_settings_choose_among_two_claims(write, monkeypatch, settings):
-    twin = SimpleNamespace(NAME="twin", sniff=lambda head: "it looks like mine", read=None)
+    twin = SimpleNamespace(NAME="twin", USES=frozenset(), sniff=lambda head: "it looks like mine", read=None)
     monkeypatch.setattr(registry, "READERS", (twin, *READERS))
     assert identify(write(LVM_HEAD), settings(format="lvm")).NAME == "lvm"
 
@@ -148,7 +148,7 @@ def test_heavy_packages_wait_until_a_log_is_read():
 def test_a_key_that_a_reader_would_pass_over_is_refused(settings, name, keys):
     reader = next(reader for reader in READERS if name == reader.NAME)
     (key,) = keys
-    with pytest.raises(FileFormatError, match=rf"gives {key}, which the reader of {name} logs does not use"):
+    with pytest.raises(FileFormatError, match=rf"{key} is set, which the reader of {name} logs does not use"):
         registry.refuse_keys(Path("log.txt"), reader, settings(**keys))
 
 
@@ -165,3 +165,22 @@ def test_a_key_that_a_reader_would_pass_over_is_refused(settings, name, keys):
 def test_the_keys_that_a_reader_uses_are_not_refused(settings, name, keys):
     reader = next(reader for reader in READERS if name == reader.NAME)
     registry.refuse_keys(Path("log.txt"), reader, settings(**keys))
+
+
+KEYS = {
+    "encoding": "cp1252", "decimal": ",", "separator": ";", "date_order": "dmy", "skip_rows": 1, "table": "a",
+    "time_zone": "UTC", "units": {"F": "N"}, "columns": ("t", "F"), "time": "t", "rate": 1.0,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("key", KEYS)
+@pytest.mark.parametrize("reader", READERS, ids=lambda reader: reader.NAME)
+def test_a_reader_takes_the_keys_that_it_says_and_refuses_the_others(settings, reader, key):
+    assert set(KEYS) >= reader.USES
+    given = settings(**{key: KEYS[key]})
+    if key in reader.USES:
+        registry.refuse_keys(Path("log"), reader, given)
+        return
+    with pytest.raises(FileFormatError, match=f"{key} is set, which the reader of") as caught:
+        registry.refuse_keys(Path("log"), reader, given)
+    assert caught.value.keys == (key,)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Final, Protocol
 
@@ -35,6 +35,7 @@ class Reader(Protocol):
     """What every reader module offers."""
 
     NAME: str
+    USES: frozenset[str]
 
     def sniff(self, head: Head) -> str | None:
         """Return why this reader claims the file, or None."""
@@ -69,28 +70,8 @@ READERS: Final[tuple[Reader, ...]] = (
     delimited,
 )
 GENERIC: Final[Reader] = delimited
-#: reader -> keys of a log in run.toml that map its columns; another reader would pass over them in silence
-_MAPPED: Final = {
-    "archive": {"table", "columns", "time", "rate"},
-    "hdf5": {"table", "columns", "time", "rate"},
-    "excel": {"table", "columns", "time", "rate"},
-    "delimited": {"columns", "time", "rate"},
-    "json": {"table", "columns", "time", "rate"},
-    "matlab": {"table", "columns", "time", "rate"},
-    "mdf": {"table"},
-    "fbgs": {"rate"},
-    "catman": {"rate"},
-}
-#: reader -> keys of text logs that its format leaves no room for; readers of containers refuse theirs by name
-_SETTLED: Final = {
-    "tdms": {"encoding", "decimal", "separator", "date_order", "skip_rows"},
-    "lvm": {"skip_rows"},
-    "catman": {"separator", "skip_rows"},
-    "enlight-sensors": {"separator", "skip_rows"},
-    "enlight-peaks": {"separator", "skip_rows"},
-    "fbgs": {"separator", "skip_rows"},
-    "toa5": {"separator", "skip_rows"},
-}
+#: settings of a log that a reader may or may not take; the others say which log it is
+_SETTINGS: Final = frozenset(field.name for field in fields(Log)) - {"file", "clock", "channels", "format"}
 #: files that people have at hand and no reader here can use
 _FOREIGN: Final = (
     (b"%PDF", "a PDF document"),
@@ -167,25 +148,10 @@ def read_log(path: Path | str, settings: Log = DEFAULT) -> RawLog:
 
 def refuse_keys(path: Path, reader: Reader, settings: Log) -> None:
     """Refuse keys of run.toml that the reader does not use."""
-    given = {
-        "table": settings.table is not None,
-        "columns": bool(settings.columns),
-        "time": settings.time is not None,
-        "rate": settings.rate is not None,
-    }
-    unused = given.keys() - _MAPPED.get(reader.NAME, set())
-    unused |= _SETTLED.get(reader.NAME, set())
-    given |= {
-        "encoding": settings.encoding is not None,
-        "decimal": settings.decimal is not None,
-        "separator": settings.separator is not None,
-        "date_order": settings.date_order is not None,
-        "skip_rows": settings.skip_rows != 0,
-    }
-    for key in sorted(key for key, is_given in given.items() if is_given):
-        if key in unused:
-            message = f"run.toml gives {key}, which the reader of {reader.NAME} logs does not use"
-            raise FileFormatError(message, f"remove {key} for this log", path=path)
+    for key in sorted(_SETTINGS - reader.USES):
+        if getattr(settings, key) != getattr(DEFAULT, key):
+            message = f"{key} is set, which the reader of {reader.NAME} logs does not use"
+            raise FileFormatError(message, f"remove {key}", path=path, keys=(key,))
 
 
 def _forced(head: Head, wanted: str, claims: list[tuple[Reader, str]]) -> tuple[Reader, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -103,24 +103,3 @@ def with_column_names(table: Table, settings: Log) -> Table:
     names, renamed = unique_names(table.names)
     columns = tuple(replace(column, name=name) for column, name in zip(table.columns, names, strict=True))
     return replace(table, columns=columns, remarks=(*table.remarks, *renamed))
-
-
-def refuse_settings(path: Path, settings: Log, what: str, *, allowed: Sequence[str] = ()) -> None:
-    """Refuse settings of text logs that mean nothing for this file.
-
-    Raises
-    ------
-    FileFormatError
-        One of them is given.
-    """
-    given = {
-        "encoding": settings.encoding is not None,
-        "decimal": settings.decimal is not None,
-        "separator": settings.separator is not None,
-        "date_order": settings.date_order is not None,
-        "skip_rows": settings.skip_rows != 0,
-    }
-    for name, is_given in given.items():
-        if is_given and name not in allowed:
-            message = f"run.toml gives {name}, which {what} does not need"
-            raise FileFormatError(message, f"remove {name} for this log", path=path)

@@ -17,12 +17,29 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "archive"
+#: keys of a log in run.toml that it takes
+USES = frozenset(
+    [
+        "encoding",
+        "decimal",
+        "separator",
+        "date_order",
+        "skip_rows",
+        "time_zone",
+        "units",
+        "table",
+        "columns",
+        "time",
+        "rate",
+    ]
+)
 
 
 class ArchiveReader:
     """The reader of zip archives, given what reads their members: they may have any format."""
 
     NAME = NAME
+    USES = USES
 
     def __init__(self, read_member: Callable[[Path, Log], RawLog]) -> None:
         self._read_member = read_member

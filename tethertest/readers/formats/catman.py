@@ -22,6 +22,8 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "catman"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["encoding", "decimal", "date_order", "time_zone", "units", "rate"])
 #: cells of a cut row that its message shows
 _CELLS_SHOWN: Final = 4
 #: names of time channels, by the language of catman

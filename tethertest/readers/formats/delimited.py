@@ -16,6 +16,21 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "delimited"
+#: keys of a log in run.toml that it takes
+USES = frozenset(
+    [
+        "encoding",
+        "decimal",
+        "separator",
+        "date_order",
+        "skip_rows",
+        "time_zone",
+        "units",
+        "columns",
+        "time",
+        "rate",
+    ]
+)
 #: characters of the first line that a person is shown
 _SHOWN = 60
 

@@ -20,6 +20,8 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "enlight-sensors"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["encoding", "decimal", "date_order", "time_zone", "units"])
 
 
 def sniff(head: Head) -> str | None:

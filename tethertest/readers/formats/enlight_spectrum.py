@@ -11,6 +11,8 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "enlight-spectrum"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["encoding", "decimal", "separator", "date_order", "skip_rows", "time_zone", "units"])
 
 
 def sniff(head: Head) -> str | None:

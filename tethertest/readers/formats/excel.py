@@ -9,13 +9,15 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.containers.log import log_of
 from tethertest.readers.containers.sheet import Sheet, sheet_of
 from tethertest.readers.containers.sheet_table import first_row, table_of_sheet
-from tethertest.readers.containers.table import listed, refuse_settings, toml_text
+from tethertest.readers.containers.table import listed, toml_text
 from tethertest.readers.containers.workbook import is_in, opened_workbook
 from tethertest.readers.text.document import Head
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "excel"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["date_order", "skip_rows", "time_zone", "units", "table", "columns", "time", "rate"])
 
 
 def sniff(head: Head) -> str | None:
@@ -46,7 +48,6 @@ def read(path: Path, settings: Log = DEFAULT) -> RawLog:
         openpyxl is not installed; the workbook is damaged or larger than a log may be; no sheet holds a table
         or several do; formulas were never calculated; cells are merged or of mixed kinds.
     """
-    refuse_settings(path, settings, "an Excel workbook", allowed=("date_order", "skip_rows"))
     skip = settings.skip_rows
     wanted = settings.table
     with opened_workbook(path) as (book, parts):

@@ -22,6 +22,8 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "fbgs"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["encoding", "decimal", "date_order", "time_zone", "units", "rate"])
 _NUMBER: Final = "Linenumber"
 _STATUS: Final = "Error status"
 

@@ -12,7 +12,6 @@ from tethertest.errors import FileFormatError, TethertestError
 from tethertest.readers.containers.choice import table_of
 from tethertest.readers.containers.hdf5_tree import Walk, text_attribute
 from tethertest.readers.containers.log import log_of
-from tethertest.readers.containers.table import refuse_settings
 from tethertest.readers.containers.tree import Tree
 from tethertest.readers.guards.sandboxed_read import read_in_sandbox
 from tethertest.readers.text.document import Head, read_bytes
@@ -20,6 +19,8 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "hdf5"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["time_zone", "units", "table", "columns", "time", "rate"])
 MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 #: `format` of the root of a run that was written by `tethertest ingest`
 _STORE: Final = "tethertest-run"
@@ -52,7 +53,6 @@ def read(path: Path, settings: Log = DEFAULT) -> RawLog:
         The file is damaged, is a run store, holds no table or several, or what is asked for lies in another
         file, is larger than a log may be, or is compressed in a way that is not known.
     """
-    refuse_settings(path, settings, "an HDF5 log")
     read_in_sandbox(path, __name__, "h5py")
     with opened(path) as file:
         if text_attribute(file.attrs, "format") == _STORE:

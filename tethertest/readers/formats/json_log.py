@@ -16,7 +16,7 @@ import numpy as np
 from tethertest.errors import FileFormatError
 from tethertest.readers.containers.choice import table_of
 from tethertest.readers.containers.log import log_of
-from tethertest.readers.containers.table import Column, Numbers, refuse_settings
+from tethertest.readers.containers.table import Column, Numbers
 from tethertest.readers.containers.tree import NAME_LISTS, UNIT_KEYS, Branch, Leaf, Records, Tree, facts_of
 from tethertest.readers.guards.limits import CELLS, COLUMNS, DEPTH, JSON_BYTES, JSON_LISTS, OBJECTS
 from tethertest.readers.text.cells import split_unit
@@ -27,6 +27,10 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "json"
+#: keys of a log in run.toml that it takes
+USES = frozenset(
+    ["encoding", "date_order", "skip_rows", "time_zone", "units", "table", "columns", "time", "rate"]
+)
 #: longer whole numbers may not be int64
 _INT64_DIGITS: Final = 19
 #: a list of lists or objects, or an object: what begins otherwise is text with brackets in it
@@ -64,7 +68,6 @@ def read(path: Path, settings: Log = DEFAULT) -> RawLog:
         The JSON is cut, nested too deep, repeats a key or is too large, rows differ in width, a value is
         text among numbers, or the table or its time is not evident.
     """
-    refuse_settings(path, settings, "a JSON log", allowed=("encoding", "date_order", "skip_rows"))
     document = read_document(path, settings.encoding)
     if len(document.body) > JSON_BYTES:
         message = f"the JSON log has {len(document.body) >> 20} MB, expected at most {JSON_BYTES >> 20} MB"

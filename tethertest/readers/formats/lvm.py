@@ -25,6 +25,8 @@ from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "lvm"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["encoding", "decimal", "separator", "date_order", "time_zone", "units"])
 #: an X column whose steps vary by less than this share is one of even samples, else Delta_X means nothing
 _UNEVEN: Final = 0.2
 #: X values are seconds, from the start or since 1904

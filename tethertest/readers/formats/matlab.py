@@ -12,7 +12,6 @@ from tethertest.readers.containers import mat5, mat73
 from tethertest.readers.containers.choice import table_of
 from tethertest.readers.containers.log import log_of
 from tethertest.readers.containers.matlab_tree import Array, Item, Struct, tree_of
-from tethertest.readers.containers.table import refuse_settings
 from tethertest.readers.formats.hdf5 import opened
 from tethertest.readers.guards.sandboxed_read import read_in_sandbox
 from tethertest.readers.text.document import Head, read_bytes
@@ -20,6 +19,8 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "matlab"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["date_order", "time_zone", "units", "table", "columns", "time", "rate"])
 _HEADER_BYTES: Final = 128
 #: version and mark of the byte order at the end of the header
 _LEVEL_5: Final = {b"\x00\x01IM", b"\x01\x00MI"}
@@ -64,7 +65,6 @@ def read(path: Path, settings: Log = DEFAULT) -> RawLog:
     FileFormatError
         The file is damaged or cut, is of version 4 or Octave's text, or holds no table or several.
     """
-    refuse_settings(path, settings, "a MATLAB file", allowed=("date_order",))
     version = read_bytes(path, _HEADER_BYTES)[124:]
     if version in _LEVEL_73:
         read_in_sandbox(path, __name__, "h5py")

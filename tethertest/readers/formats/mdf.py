@@ -17,7 +17,7 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
-from tethertest.readers.containers.table import listed, refuse_settings, toml_text
+from tethertest.readers.containers.table import listed, toml_text
 from tethertest.readers.guards.mdf_blocks import VIRTUAL, check_level_3, check_level_4
 from tethertest.readers.guards.sandboxed_read import read_in_sandbox
 from tethertest.readers.text.document import Head, read_bytes
@@ -28,6 +28,8 @@ from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "mdf"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["time_zone", "units", "table"])
 _MAGIC: Final = b"MDF     "
 #: what a logger writes until it closes the file
 _UNFINISHED: Final = b"UnFinMF "
@@ -69,7 +71,6 @@ def read(path: Path, settings: Log = DEFAULT) -> RawLog:
         asammdf is not installed; the file is damaged, cut, not finalised or larger than a log may be; no
         channel has numbers and a time.
     """
-    refuse_settings(path, settings, "an MDF log")
     with opened(path) as file:
         channels, remarks = _channels_of(path, file, settings.table)
         start = _start(path, file, settings)

@@ -26,6 +26,8 @@ from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "tdms"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["time_zone", "units"])
 #: bytes of a compressed file that are unpacked in memory; a larger one goes to the disk
 _SPOOLED: Final = 2**26
 

@@ -28,6 +28,8 @@ from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 
 NAME = "toa5"
+#: keys of a log in run.toml that it takes
+USES = frozenset(["encoding", "decimal", "date_order", "time_zone", "units"])
 _MARK: Final = "TOA5"
 _ROWS: Final = ("environment", "names", "units", "process")
 #: what the environment row holds after the mark

@@ -234,6 +234,8 @@ class Channel:
 
     def with_flags(self, where: BoolArray, flag: Flag) -> Channel:
         """Return a channel with `flag` added where the mask is true."""
+        if not np.any(where):
+            return self
         flags = self.flags.copy()
         flags[where] |= np.uint16(flag)
         return replace(self, flags=flags)

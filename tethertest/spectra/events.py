@@ -87,16 +87,15 @@ def find_events(
     limit = min(cutoff, 0.4 * channel.rate)
     smooth = low_passed(filled(channel), channel.rate, limit)
     zero = float(np.hypot(zero_uncertainty, channel.noise * np.sqrt(2.0 * limit / channel.rate)))
-    zero = max(zero, RINGING * float(np.max(np.abs(smooth))))
+    zero = max(zero, RINGING * max(float(np.max(smooth)), -float(np.min(smooth))))
     events: list[Event] = []
     intervals = _slack_intervals(channel.time, smooth, zero, shortest)
-    values = np.where(channel.usable, channel.values, np.nan)
     for number, (start, stop) in enumerate(intervals):
         inside = (channel.time >= start) & (channel.time <= stop)
         lowest = float(smooth[inside].min()) if inside.any() else 0.0
         events.append(Event(EventKind.SLACK, channel.name, start, stop, lowest))
         following = intervals[number + 1][0] if number + 1 < len(intervals) else np.inf
-        snap = _snap(channel, values, stop, stop + snap_span, following)
+        snap = _snap(channel, stop, stop + snap_span, following)
         if snap is not None:
             events.append(snap)
     return tuple(events)
@@ -150,14 +149,16 @@ def _crossing(time: FloatArray, tension: FloatArray, outside: int, inside: int, 
     return float(time[inside] + share * (time[outside] - time[inside]))
 
 
-def _snap(channel: Channel, values: FloatArray, start: float, stop: float, following: float) -> Event | None:
+def _snap(channel: Channel, start: float, stop: float, following: float) -> Event | None:
     first = int(np.searchsorted(channel.time, start))
     last, end = np.searchsorted(channel.time, [min(stop, following), following], "right")
-    if not np.isfinite(values[first:last]).any():
+    part = channel.rows(first, int(end))
+    values = np.where(part.usable, part.values, np.nan)
+    if not np.isfinite(values[: last - first]).any():
         return None
-    peak = first + int(np.nanargmax(values[first:last]))
-    largest = np.fmax.accumulate(values[peak:end])
-    fallen = values[peak:end] < np.minimum(FALLEN * largest, largest - CLEAR * channel.noise)
+    peak = int(np.nanargmax(values[: last - first]))
+    largest = np.fmax.accumulate(values[peak:])
+    fallen = values[peak:] < np.minimum(FALLEN * largest, largest - CLEAR * channel.noise)
     top = int(np.argmax(fallen)) if fallen.any() else fallen.size
     peak += int(np.nanargmax(values[peak : peak + top]))
-    return Event(EventKind.SNAP, channel.name, start, float(channel.time[peak]), float(values[peak]))
+    return Event(EventKind.SNAP, channel.name, start, float(part.time[peak]), float(values[peak]))

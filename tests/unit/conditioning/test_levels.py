@@ -9,7 +9,7 @@ import pytest
 
 from tethertest.conditioning.clocks.coloured import noise_of
 from tethertest.conditioning.flags.hum import hum_amplitude, with_hum_flagged
-from tethertest.conditioning.flags.spikes import with_spikes_flagged
+from tethertest.conditioning.flags.spikes import SpikeRule, with_spikes_flagged
 from tethertest.conditioning.load_cells.tare import Level, rest_level, zeroed
 from tethertest.conditioning.timestamps.jumps import without_jumps
 from tethertest.records.arrays import FloatArray
@@ -177,8 +177,8 @@ def test_a_spike_is_twelve_standard_deviations_high() -> None:
     for height, seen in ((0.115, False), (0.125, True)):
         values = np.full(2000, 5.0)
         values[700] += height
-        (found,) = with_spikes_flagged([cell(values, rate=1000.0)], [0.01])
-        assert bool(np.any(found.flags)) is seen
+        spikes = SpikeRule(0.01, np.zeros(0)).spikes(cell(values, rate=1000.0), ())
+        assert bool(np.any(spikes)) is seen
 
 
 def test_what_two_channels_show_within_a_waves_delay_is_no_spike() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -111,14 +111,13 @@ def with_spikes_flagged(channels: Sequence[Channel]) -> tuple[Channel, ...]:
             for other, its_rule in zip(channels, rules, strict=True)
             if other is not channel and other.kind == channel.kind
         ]
-        flags = channel.flags.copy()
+        spikes = np.zeros(channel.time.size, dtype=bool)
         for start, stop in blocks_of(channel.time.size):
             first = max(start - CONTEXT, 0)
             part = channel.rows(first, stop + CONTEXT)
             near = ((_around(other, part), sigma) for other, sigma in others)
-            spike = rule.spikes(part, near)[start - first : stop - first]
-            flags[start:stop][spike] |= np.uint16(Flag.SPIKE)
-        result.append(replace(channel, flags=flags))
+            spikes[start:stop] = rule.spikes(part, near)[start - first : stop - first]
+        result.append(channel.with_flags(spikes, Flag.SPIKE))
     return tuple(result)
 
 

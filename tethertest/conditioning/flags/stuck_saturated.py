@@ -87,6 +87,8 @@ def with_plateaus_flagged(channel: Channel) -> Channel:
     if size < 2:
         return channel
     found = plateaus_of(read, size, BLOCK, channel.kind)
+    if not (found.saturated.size or found.stuck.size):
+        return channel
     flags = channel.flags.copy()
     for start, stop in blocks_of(size):
         flags[start:stop] |= found.flags(channel.values[start:stop], start)

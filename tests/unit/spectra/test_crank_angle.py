@@ -178,3 +178,20 @@ def test_lost_peaks_leave_no_amplitude_standing(channel: Maker, time: FloatArray
     line = find_lines(record, window, fit_drive([record], window, 0.25), Expectation()).line("1")
     assert line is not None
     assert line.verdict is LineVerdict.UNDETERMINED
+
+
+def test_a_wander_that_noise_may_feign_casts_no_doubt_on_a_line(
+    channel: Maker, time: FloatArray, window: Window
+) -> None:
+    random = np.random.default_rng(53)
+    steady = channel(time, cosine(time, 0.25, 0.1) + 1e-4 * random.standard_normal(2048), name="heave")
+    locked = cosine(time, 0.25) + cosine(time, 0.125, 0.1, 1.0) + 0.02 * random.standard_normal(2048)
+    drive = fit_drive([steady], window, 0.25)
+    crank = crank_angle(steady, window, drive)
+    assert crank is not None
+    # a third of it would be three times the line; but twice as much is still noise
+    feigned = replace(crank, wander=1.0, noise=0.5)
+    assert not feigned.varies
+    half = find_lines(channel(time, locked), window, drive, Expectation(), crank=feigned).line("1/2")
+    assert half is not None
+    assert half.verdict is LineVerdict.SUBHARMONIC

@@ -63,7 +63,7 @@ oldest: $(UV)  ## the tests with the lowest versions that pyproject.toml allows
 # the longest come first: what is left is shared out as it comes
 LOGS := tests/verification/test_clock_errors.py tests/store tests/fuzz tests/hostile tests/readers \
 	tests/unit/conditioning tests/verification/test_flag_rates.py
-LINES := tests/unit/spectra tests/pipeline tests/verification/test_line_calibration.py tests/verification/test_wave_energy.py
+LINES := tests/unit/spectra tests/jobs tests/verification/test_line_calibration.py tests/verification/test_wave_energy.py
 PROOF := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m reports
 VERIFY := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m verify
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.kernel_warm_up import compile_share
-from tethertest.pipeline.report import make_report
+from tethertest.jobs.report import make_report
 from tethertest.records.report import Report
 
 

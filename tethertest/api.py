@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from tethertest.pipeline.analysis_options import MAINS, Options
-from tethertest.pipeline.analyze import analyze as analyze_path
-from tethertest.pipeline.evaluation import open_evaluation
-from tethertest.pipeline.read_bare import read_bare
-from tethertest.pipeline.report import make_report
-from tethertest.pipeline.scale import scale_rig
+from tethertest.jobs.analysis_options import MAINS, Options
+from tethertest.jobs.analyze import analyze as analyze_path
+from tethertest.jobs.evaluation import open_evaluation
+from tethertest.jobs.read_bare import read_bare
+from tethertest.jobs.report import make_report
+from tethertest.jobs.scale import scale_rig
 from tethertest.records.analysis import Analysis
 from tethertest.records.channel import ConditionedRun, RawLog
 from tethertest.records.report import Report

@@ -39,7 +39,7 @@ SEED = 20
 _FORKS: Final = multiprocessing.get_context("forkserver")
 _FORKS.set_forkserver_preload(
     [
-        *("tethertest.pipeline.ingest", "tethertest.cli.ingest", "tethertest.kernels.fields"),
+        *("tethertest.jobs.ingest", "tethertest.cli.ingest", "tethertest.kernels.fields"),
         *("numba", "pandas", "pint", "pydantic", "nptdms", "h5py"),
         *(
             "scipy.signal",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tethertest.readers.text.blocks import RowPlan, parse_block
-from tethertest.readers.text.textlog import TextBlock
+from tethertest.readers.tables.text.blocks import RowPlan, parse_block
+from tethertest.readers.tables.text.textlog import TextBlock
 from tethertest.units.registry import registry
 
 registry()

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from tethertest.pipeline.inspect import inspected
-from tethertest.pipeline.remarks import grouped, some
+from tethertest.jobs.inspect import inspected
+from tethertest.jobs.remarks import grouped, some
 from tethertest.render.as_json import as_json
 
 #: what stands below this line of the page is written by hand, and kept

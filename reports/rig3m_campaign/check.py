@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tethertest.errors import TethertestError
-from tethertest.pipeline.report import make_report
+from tethertest.jobs.report import make_report
 from tethertest.records.channel import Channel
 from tethertest.records.report import Report
 

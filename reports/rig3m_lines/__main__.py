@@ -15,8 +15,8 @@ from reports.rig3m_lines.findings import TENSIONS, Complaints, table
 from reports.rig3m_lines.lines import LineCheck
 from reports.rig3m_lines.slack import SlackCheck
 from reports.rig3m_lines.snaps import SnapCheck
-from tethertest.pipeline.analysis_options import Options
-from tethertest.pipeline.analyze import analyze
+from tethertest.jobs.analysis_options import Options
+from tethertest.jobs.analyze import analyze
 from tethertest.render.write import write_files
 
 CAMPAIGN = Path(__file__).parents[2] / "datasets" / "rig3m"

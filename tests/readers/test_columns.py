@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.text.columns import read_columns
-from tethertest.readers.text.table import find_rows
+from tethertest.readers.tables.text.columns import read_columns
+from tethertest.readers.tables.text.table import find_rows
 
 
 def columns(text, width, *, quotes=False, **options):

@@ -4,7 +4,7 @@ import pytest
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
-from tethertest.readers.text.encoding import detect_encoding, encoding_of_blocks
+from tethertest.readers.tables.text.encoding import detect_encoding, encoding_of_blocks
 
 CHINESE = "时间(s),拉力(千牛),应变(微应变)\n"
 

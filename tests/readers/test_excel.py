@@ -13,8 +13,8 @@ import pytest
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import identify, read_log
-from tethertest.readers.containers import sheet, workbook
 from tethertest.readers.guards import limits
+from tethertest.readers.tables.containers import sheet, workbook
 from tethertest.records.run import DEFAULT
 
 T = np.arange(20) / 50.0

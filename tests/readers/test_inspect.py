@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tethertest.pipeline.inspect import described
+from tethertest.jobs.inspect import described
 from tethertest.readers import read_log
 from tethertest.readers.inspect import described_channels
 from tethertest.records.inspected import ChannelSeen

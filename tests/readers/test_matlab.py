@@ -12,7 +12,7 @@ import scipy.io
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
-from tethertest.readers.containers import mat5
+from tethertest.readers.tables.containers import mat5
 
 T = np.arange(50) / 50.0
 F = 5.0 + np.sin(T)

@@ -14,7 +14,7 @@ import pytest
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import READERS, formats, identify, read_log, registry
-from tethertest.readers.text.document import Head, read_head
+from tethertest.readers.tables.text.document import Head, read_head
 from tethertest.records.run import DEFAULT
 
 LVM_HEAD = "LabVIEW Measurement\t\nWriter_Version\t2\n"

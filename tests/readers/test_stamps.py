@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.text.stamps import parse_stamps, stamp_kind
+from tethertest.readers.tables.text.stamps import parse_stamps, stamp_kind
 
 PATH = Path("log.txt")
 

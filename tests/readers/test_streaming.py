@@ -18,7 +18,7 @@ from nptdms import ChannelObject, RootObject, TdmsWriter
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
 from tethertest.readers.streaming import stream_log
-from tethertest.readers.text import textlog
+from tethertest.readers.tables.text import textlog
 
 START = np.datetime64("2026-09-05T06:20:00.250000")
 STAMPS = "".join(f"{day:02}/05/2026 23:59:5{day - 8}.5;{day},5\n" for day in range(9, 15))

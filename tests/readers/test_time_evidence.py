@@ -8,7 +8,7 @@ import pytest
 
 from tethertest.errors import FileFormatError
 from tethertest.readers import read_log
-from tethertest.readers.text import textlog
+from tethertest.readers.tables.text import textlog
 from tethertest.records.channel import RawLog
 
 BASE = dt.datetime(2026, 9, 5, 10)

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from tethertest.errors import TethertestError
-from tethertest.pipeline.export import FORMATS, export
-from tethertest.pipeline.exports.csv import safe_cell
-from tethertest.pipeline.exports.matlab import valid_names
-from tethertest.pipeline.exports.source import SeriesInMemory, time_bases
-from tethertest.pipeline.inspect import inspect_path
+from tethertest.jobs.export import FORMATS, export
+from tethertest.jobs.exports.csv import safe_cell
+from tethertest.jobs.exports.matlab import valid_names
+from tethertest.jobs.exports.source import SeriesInMemory, time_bases
+from tethertest.jobs.inspect import inspect_path
 from tethertest.readers import read_log
 from tethertest.records.channel import Channel, ConditionedRun, Flag
 from tethertest.render.as_json import as_json
@@ -126,7 +126,7 @@ def test_parquet_keeps_values_flags_units_and_provenance(
 def test_without_pyarrow_a_plain_message(
     store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tethertest.pipeline.exports.parquet.find_spec", lambda name: None)
+    monkeypatch.setattr("tethertest.jobs.exports.parquet.find_spec", lambda name: None)
     with pytest.raises(TethertestError, match="pyarrow") as refused:
         export(store, "parquet", tmp_path / "out.parquet")
     assert "tethertest[tables]" in refused.value.remedy
@@ -178,7 +178,7 @@ def test_an_export_is_the_same_to_the_byte(form: str, store: Path, tmp_path: Pat
 
 
 def test_a_run_folder_and_its_store_export_the_same(run: Path, tmp_path: Path) -> None:
-    from tethertest.pipeline.ingest import ingest_run
+    from tethertest.jobs.ingest import ingest_run
 
     stored = ingest_run(run, tmp_path / "run.h5", ROOT / "rigs").path
     one = export(stored, "csv", tmp_path / "one.csv").paths
@@ -187,7 +187,7 @@ def test_a_run_folder_and_its_store_export_the_same(run: Path, tmp_path: Path) -
 
 
 def test_files_of_a_run_are_left_alone(run: Path, tmp_path: Path) -> None:
-    from tethertest.pipeline.ingest import ingest_run
+    from tethertest.jobs.ingest import ingest_run
 
     stored = ingest_run(run, tmp_path / "run.h5", ROOT / "rigs").path
     for source, target in ((run, run / "tension.csv"), (stored, run / "run.toml"), (stored, stored)):

@@ -14,8 +14,8 @@ import pytest
 from reports.crash_safety.battery import Battery, Tally, kill_at_random, starve
 from tethertest.cli import main
 from tethertest.conditioning import condition
-from tethertest.pipeline.evaluation import read_logs, rig_priors
-from tethertest.pipeline.stored import run_of
+from tethertest.jobs.evaluation import read_logs, rig_priors
+from tethertest.jobs.stored import run_of
 from tethertest.readers import load_run
 from tethertest.store import load_store
 

@@ -14,13 +14,13 @@ from tethertest.conditioning import condition
 from tethertest.conditioning.flags.stuck_saturated import plateaus_of, with_plateaus_flagged
 from tethertest.conditioning.timestamps.stamps import audit_stamps
 from tethertest.errors import DataError, TethertestError
-from tethertest.pipeline.evaluation import read_logs, rig_priors
-from tethertest.pipeline.ingest import ingest_run
-from tethertest.pipeline.long_runs.columns import Column, Scratch, Sizes
-from tethertest.pipeline.long_runs.gather import gathered
-from tethertest.pipeline.long_runs.ingest import Sources, ingest_long
-from tethertest.pipeline.long_runs.record import record_of
-from tethertest.pipeline.stored import store_header
+from tethertest.jobs.evaluation import read_logs, rig_priors
+from tethertest.jobs.ingest import ingest_run
+from tethertest.jobs.long_runs.columns import Column, Scratch, Sizes
+from tethertest.jobs.long_runs.gather import gathered
+from tethertest.jobs.long_runs.ingest import Sources, ingest_long
+from tethertest.jobs.long_runs.record import record_of
+from tethertest.jobs.stored import store_header
 from tethertest.readers import load_run
 from tethertest.records.channel import Channel, ConditionedRun, Flag, RawChannel, RawLog
 from tethertest.records.run import Run
@@ -211,7 +211,7 @@ def test_a_full_disk_while_scratching_is_told_and_leaves_nothing(
     run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(self: Column, values: np.ndarray) -> None:
-        from tethertest.pipeline.long_runs.columns import no_scratch
+        from tethertest.jobs.long_runs.columns import no_scratch
 
         raise no_scratch(tmp_path, OSError(errno.ENOSPC, "No space left on device"))
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tethertest.conditioning import condition
-from tethertest.pipeline.evaluation import read_logs, rig_priors
+from tethertest.jobs.evaluation import read_logs, rig_priors
 from tethertest.readers import load_run
 from tethertest.records.channel import Flag
 

@@ -15,7 +15,7 @@ import pytest
 
 from reports.clock_errors.rig import RIG
 from reports.wave_energy.steady import steady_state
-from tethertest.pipeline.wave_findings import largest_tension, replayed_waves
+from tethertest.jobs.wave_findings import largest_tension, replayed_waves
 from tethertest.records.cable import Cable
 from tethertest.records.channel import Window
 from tethertest.records.lines import DriveFit

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tethertest.readers import load_scene
-from tethertest.readers.scenes.series import read_motion, read_wind
+from tethertest.readers.config.scene_series import read_motion, read_wind
 from tethertest.records.scene import MeasuredMotion, Scene, WindSeries
 
 

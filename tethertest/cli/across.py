@@ -11,7 +11,7 @@ import typer
 from tethertest.cli.analysis_tables import print_table
 
 if TYPE_CHECKING:
-    from tethertest.pipeline.analysis_options import Options
+    from tethertest.jobs.analysis_options import Options
 
 _UNITS = {"frequency": "Hz", "amplitude": "m"}
 
@@ -21,7 +21,7 @@ def analyze_runs(
 ) -> None:
     """Analyse the runs of a folder together, and print or write what they show."""
     from tethertest.errors import TethertestError
-    from tethertest.pipeline.across import analyze_across
+    from tethertest.jobs.across import analyze_across
     from tethertest.render.across import PrintedAcross, across_summary, write_across
     from tethertest.render.as_json import as_json as values_of
     from tethertest.render.as_json import json_line

@@ -44,8 +44,8 @@ def analyze(
 ) -> None:
     """Find the orders of the drive with verdicts, slack, snaps, load cycles and waves."""
     from tethertest.errors import TethertestError
-    from tethertest.pipeline.analysis_options import asked_options
-    from tethertest.pipeline.analyze import analyze as analyze_path
+    from tethertest.jobs.analysis_options import asked_options
+    from tethertest.jobs.analyze import analyze as analyze_path
     from tethertest.render.analysis import WrittenAnalysis, analysis_summary
     from tethertest.render.as_json import as_json as values_of
     from tethertest.render.as_json import json_line

@@ -35,7 +35,7 @@ def export(
 
     CSV and Parquet have one table per time base: with several clocks each gets a file of its own.
     """
-    from tethertest.pipeline.export import export as write
+    from tethertest.jobs.export import export as write
 
     made = write(run, to.value, output, rigs)
     if as_json:

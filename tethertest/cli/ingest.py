@@ -27,7 +27,7 @@ def ingest(
 
     The file appears whole or not at all; an older one is replaced in one step. Raw logs are only read.
     """
-    from tethertest.pipeline.ingest import ingest_run
+    from tethertest.jobs.ingest import ingest_run
 
     with _bar() as progress:
         made = ingest_run(run, output, rigs, progress=progress)

@@ -24,7 +24,7 @@ def inspect(
     ] = False,
 ) -> None:
     """Say what a log or run folder is and why it is read so: format, channels, units, rate, span, flags."""
-    from tethertest.pipeline.inspect import inspected
+    from tethertest.jobs.inspect import inspected
     from tethertest.render.as_json import as_json as values_of
     from tethertest.render.as_json import json_line
 

@@ -7,7 +7,7 @@ from typing import Any
 import typer
 
 from tethertest.cli.terminal import printable, table_console
-from tethertest.pipeline.remarks import grouped, some
+from tethertest.jobs.remarks import grouped, some
 
 #: separators that say nothing when they are printed as they are
 _SEPARATORS = {"\t": "tab", " ": "spaces", ",": "comma", ";": "semicolon"}

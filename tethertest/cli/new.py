@@ -21,8 +21,8 @@ def new(
     ] = False,
 ) -> None:
     """Look at the logs of a folder and write a commented run.toml to complete."""
-    from tethertest.pipeline.draft_text import written_draft
-    from tethertest.pipeline.new_run import new_run
+    from tethertest.jobs.draft_text import written_draft
+    from tethertest.jobs.new_run import new_run
     from tethertest.render.as_json import json_line
 
     path, draft = new_run(run, logs or (), rigs)

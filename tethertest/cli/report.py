@@ -29,7 +29,7 @@ def report(
     Exit code 0 pass, 1 fail, 2 bad input, 3 fault of the program, 4 undecided.
     """
     from tethertest.errors import TethertestError
-    from tethertest.pipeline.report import make_report
+    from tethertest.jobs.report import make_report
     from tethertest.render import write_report
 
     folder = Path("reports") / run.resolve().name if output is None else output

@@ -23,7 +23,7 @@ def scale(
     ] = False,
 ) -> None:
     """Compare a rig with its prototype: dimensionless groups, ratios and how distorted the model is."""
-    from tethertest.pipeline.scale import scale_rig
+    from tethertest.jobs.scale import scale_rig
     from tethertest.render.as_json import json_line
 
     found = scale_rig(rig, to, frequency, amplitude, mode)

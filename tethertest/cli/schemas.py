@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any, Final
 
 from tethertest.bench.speed import Measured
-from tethertest.pipeline.draft import WrittenDraft
-from tethertest.pipeline.export import Export
-from tethertest.pipeline.ingest import Ingested
-from tethertest.pipeline.solve_summary import SolveSummary
+from tethertest.jobs.draft import WrittenDraft
+from tethertest.jobs.export import Export
+from tethertest.jobs.ingest import Ingested
+from tethertest.jobs.solve_summary import SolveSummary
 from tethertest.records.inspected import Inspected
 from tethertest.records.rig import Prototype, Rig
 from tethertest.records.run import RunFile

@@ -11,7 +11,7 @@ import typer
 from tethertest.cli.exit_codes import UNDECIDED
 
 if TYPE_CHECKING:
-    from tethertest.pipeline.solve_summary import SolveSummary
+    from tethertest.jobs.solve_summary import SolveSummary
 
 #: meshes worth asking for
 FEWEST_CELLS, MOST_CELLS = 2, 20_000
@@ -70,10 +70,10 @@ def solve(
     ] = False,
 ) -> None:
     """Solve one scene: tension and strain at its gauges, with the estimated error."""
-    from tethertest.pipeline.asked import TOLERANCE, asked
-    from tethertest.pipeline.response_files import response_writer
-    from tethertest.pipeline.solve import solve_scene
-    from tethertest.pipeline.solve_summary import solve_summary
+    from tethertest.jobs.parse_option import TOLERANCE, parse_option
+    from tethertest.jobs.response_files import response_writer
+    from tethertest.jobs.solve import solve_scene
+    from tethertest.jobs.solve_summary import solve_summary
     from tethertest.records.response import Status
     from tethertest.render.write import write_files
 
@@ -81,7 +81,7 @@ def solve(
     response = solve_scene(
         scene,
         fidelity.value,
-        None if tolerance is None else asked("--tolerance", tolerance, TOLERANCE),
+        None if tolerance is None else parse_option("--tolerance", tolerance, TOLERANCE),
         scheme=scheme.value,
         cells=cells,
         fields=None if fields is None else [name.strip() for name in fields.split(",") if name.strip()],

@@ -10,7 +10,7 @@ from typing import Final
 
 from tethertest.errors import FileFormatError, QuantityError, RunFileError, TethertestError
 from tethertest.readers.fingerprint import file_sha256
-from tethertest.readers.text.document import read_document
+from tethertest.readers.tables.text.document import read_document
 from tethertest.records.calibration import CalibrationData, CalibrationPoint
 from tethertest.records.rig import Rig, Sensor
 from tethertest.units import Kind, UnitScale, channel_scale, parse_quantity

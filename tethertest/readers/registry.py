@@ -25,8 +25,8 @@ from tethertest.readers.formats import (
     toa5,
 )
 from tethertest.readers.formats.archive import ArchiveReader
-from tethertest.readers.text.document import Head, nul_bytes, read_head
-from tethertest.readers.text.encoding import detect_encoding
+from tethertest.readers.tables.text.document import Head, nul_bytes, read_head
+from tethertest.readers.tables.text.encoding import detect_encoding
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 

@@ -10,7 +10,7 @@ from typing import Final
 from tethertest.readers.fingerprint import unchanged
 from tethertest.readers.formats import delimited, tdms
 from tethertest.readers.registry import identified, refuse_keys
-from tethertest.readers.text.textlog import Progress
+from tethertest.readers.tables.text.textlog import Progress
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 

@@ -30,7 +30,7 @@ class LineVerdict(Enum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Course:
+class OrderTrack:
     """Amplitude and phase of one line, window by window."""
 
     time: FloatArray  #: (n,) middles of the windows [s]
@@ -53,7 +53,7 @@ class Line:
     p_value: float
     verdict: LineVerdict
     reason: str
-    course: Course | None = None  #: of the lines that were followed over the record
+    track: OrderTrack | None = None  #: of the lines that were followed over the record
     length_needed: float | None = None  #: [s] of a record that would resolve it, where this one does not
     significant_above: float | None = None  #: raw amplitude, not de-biased, from which it is significant
     calibration_error: float = 0.0  #: standard error of the amplitude by the channel's scale alone

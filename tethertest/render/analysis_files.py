@@ -15,7 +15,7 @@ from tethertest.render.order_table import analysis_page, order_rows
 from tethertest.render.scales import scale_for
 from tethertest.render.write import write_files
 from tethertest.spectra.order_spectrogram import order_spectrogram
-from tethertest.spectra.portraits import portrait
+from tethertest.spectra.phase_portrait import portrait
 from tethertest.spectra.spectrum import spectrum
 from tethertest.spectra.thomson import blind_search
 

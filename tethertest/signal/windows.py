@@ -240,7 +240,7 @@ def _settled(
     noise: float,
     cycles_per_sample: float,
 ) -> Booleans:
-    """Return where amplitude and speed of the demodulated drive are settled."""
+    """Return where amplitude and speed of the demodulate drive are settled."""
     cycle = 1.0 / cycles_per_sample
     stray = np.abs(_centred_difference(phase, int(0.5 * cycle))) / (2.0 * np.pi)
     settled = np.abs(size - amplitude) < max(AMPLITUDE_SETTLED * amplitude, SETTLED_SIGMAS * noise)

@@ -11,13 +11,13 @@ import numpy as np
 
 from tethertest.errors import DataError
 from tethertest.records.channel import Channel, Flag, Window
-from tethertest.records.lines import ChannelLines, Course, DriveFit, Expectation, Line, LineVerdict
-from tethertest.spectra.course import course, phase_wander
+from tethertest.records.lines import ChannelLines, DriveFit, Expectation, Line, LineVerdict, OrderTrack
 from tethertest.spectra.crank_angle import SMALLEST_WANDER, CrankAngle, crank_angle
 from tethertest.spectra.free_lines import fit_orders_and_free_lines
 from tethertest.spectra.holm import holm, holm_chances
 from tethertest.spectra.leaks import folded_order, free_sources, leakage_floor
-from tethertest.spectra.loose import SEGMENTS, loosen
+from tethertest.spectra.order_demodulation import SEGMENTS, demodulate
+from tethertest.spectra.order_track import phase_wander, track_order
 from tethertest.spectra.orders import COMPANIONS, ORDERS, RESOLUTION, length_to_resolve
 from tethertest.spectra.regression import (
     Amplitude,
@@ -27,7 +27,7 @@ from tethertest.spectra.regression import (
     order_amplitudes,
 )
 from tethertest.spectra.side_lines import swings_phase
-from tethertest.spectra.stroboscope import stroboscopic_section
+from tethertest.spectra.stroboscopic_section import stroboscopic_section
 from tethertest.spectra.tracking import Tracking, track, unsteadiness
 from tethertest.spectra.verdicts import NATURAL_RESOLUTION, Evidence, judge, length_needed
 
@@ -173,11 +173,11 @@ def _search(
     return _Search(fit, amplitudes, adjusted, significant, significance, thresholds)
 
 
-def _phases(search: _Search, window: Window) -> Course:
+def _phases(search: _Search, window: Window) -> OrderTrack:
     """Return the course of order 1, cycle by cycle."""
     fit = search.fit
     variance = float(fit.noise.density(fit.drive)[0]) * fit.blocks.rate / 2.0
-    return course(loosen(fit, FUNDAMENTAL), variance, window.start, cycles=1.0, most=SEGMENTS // 2)
+    return track_order(demodulate(fit, FUNDAMENTAL), variance, window.start, cycles=1.0, most=SEGMENTS // 2)
 
 
 def _lines(
@@ -266,7 +266,7 @@ def _line(
         amplitude.p_value,
         verdict,
         reason,
-        None if evidence.tracking is None else evidence.tracking.course,
+        None if evidence.tracking is None else evidence.tracking.track,
         needed,
         threshold if np.isfinite(threshold) else None,
         amplitude.calibration_error,

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from tethertest.records.arrays import FloatArray
-from tethertest.spectra.loose import ComplexArray, LooseOrder
+from tethertest.spectra.order_demodulation import ComplexArray, DemodulatedOrder
 
 #: time-bandwidth product and number of the tapers: the noise is taken to be flat within 4/T of a line
 BANDWIDTH: Final = 4.0
@@ -62,12 +62,12 @@ def f_value_at(chance: float) -> float:
     return (TAPERS - 1) * (float(chance ** (-1.0 / (TAPERS - 1))) - 1.0)
 
 
-def multitaper_test(loose: LooseOrder) -> MultitaperTest:
+def multitaper_test(loose: DemodulatedOrder) -> MultitaperTest:
     """Return Thomson's F of an order, on what the other orders leave: a second opinion.
 
     Parameters
     ----------
-    loose : LooseOrder
+    loose : DemodulatedOrder
         The order; its segments are the samples.
     """
     shapes = tapers(loose.left.size)

@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
-from tethertest.records.lines import Course
-from tethertest.spectra.course import course
-from tethertest.spectra.loose import LooseOrder, loosen
+from tethertest.records.lines import OrderTrack
 from tethertest.spectra.multitaper import MultitaperTest, multitaper_test
+from tethertest.spectra.order_demodulation import DemodulatedOrder, demodulate
+from tethertest.spectra.order_track import track_order
 from tethertest.spectra.regression import OrderFit, believed_excess
 
 #: each check lets 0.5 % of true locked lines fall: 2.8 standard deviations
@@ -49,7 +49,7 @@ class Tracking:
     drift_error: float  #: standard error [rad]
     thirds: float  #: chi-squared of the record's thirds having one amplitude and phase
     departure: float  #: largest relative departure of a third from the whole
-    course: Course  #: amplitude and phase, window by window
+    track: OrderTrack  #: amplitude and phase, window by window
     second_opinion: MultitaperTest
 
     @property
@@ -91,7 +91,7 @@ def track(fit: OrderFit, order: Fraction, drive_error: float) -> Tracking:
         The free frequency by search with the other orders refitted at each trial; growth and drift from a
         linear change of the two coefficients over the record.
     """
-    loose = loosen(fit, order)
+    loose = demodulate(fit, order)
     length, own = loose.length, loose.frequency
     variance = float(fit.noise.density(own)[0]) * fit.blocks.rate / 2.0 * believed_excess(fit.noise, own)
     offset, power = _free_offset(fit, loose)
@@ -117,18 +117,18 @@ def track(fit: OrderFit, order: Fraction, drive_error: float) -> Tracking:
         drift_error=float(np.hypot(drift_error, 2.0 * np.pi * pace_error * length)),
         thirds=thirds,
         departure=departure,
-        course=course(loose, variance, fit.sinusoids.origin),
+        track=track_order(loose, variance, fit.sinusoids.origin),
         second_opinion=multitaper_test(loose),
     )
 
 
 def unsteadiness(fit: OrderFit, order: Fraction) -> float:
     """Return the relative change of an order's complex amplitude over the record, growth and drift."""
-    growth, _, drift, _ = slopes(loosen(fit, order), 1.0)
+    growth, _, drift, _ = slopes(demodulate(fit, order), 1.0)
     return float(np.hypot(growth, drift))
 
 
-def slopes(loose: LooseOrder, variance: float) -> tuple[float, float, float, float]:
+def slopes(loose: DemodulatedOrder, variance: float) -> tuple[float, float, float, float]:
     """Return relative growth and phase drift over the record, each with its standard error."""
     pulls, normal = loose.modulated(np.stack((np.ones(loose.time.size), loose.ramp)))
     inverse = np.linalg.inv(normal)
@@ -145,7 +145,7 @@ def slopes(loose: LooseOrder, variance: float) -> tuple[float, float, float, flo
     )
 
 
-def _free_offset(fit: OrderFit, loose: LooseOrder) -> tuple[float, float]:
+def _free_offset(fit: OrderFit, loose: DemodulatedOrder) -> tuple[float, float]:
     """Return how far the best frequency is from the order [Hz], and what a line there explains."""
     length, own = loose.length, loose.frequency
     rest = [frequency for frequency in fit.sinusoids.frequencies if abs(frequency - own) > 1e-9 * own]
@@ -165,7 +165,7 @@ def _free_offset(fit: OrderFit, loose: LooseOrder) -> tuple[float, float]:
     return offset, float(max(loose.explained(np.array([offset]))[0], explained.max()))
 
 
-def _thirds(loose: LooseOrder, variance: float) -> tuple[float, float]:
+def _thirds(loose: DemodulatedOrder, variance: float) -> tuple[float, float]:
     """Return chi-squared of equal thirds, and the largest relative departure of one from the whole."""
     number = np.minimum((3.0 * (loose.ramp + 0.5)).astype(np.intp), 2)
     pull, normal = loose.modulated(np.stack([(number == third).astype(np.float64) for third in range(3)]))

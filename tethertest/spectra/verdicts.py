@@ -11,7 +11,7 @@ from tethertest.records.response import NaturalFrequency
 from tethertest.spectra.inputs import explain_by_input
 from tethertest.spectra.leaks import LIKELY_ORDER
 from tethertest.spectra.regression import Amplitude, stands_out
-from tethertest.spectra.stroboscope import Section
+from tethertest.spectra.stroboscopic_section import Section
 from tethertest.spectra.tracking import GATE, LOOSE_CYCLES, Tracking
 
 #: a line and a natural frequency are told apart from T |df| = 2 on

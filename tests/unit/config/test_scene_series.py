@@ -7,7 +7,7 @@ import pytest
 
 from tethertest.errors import TethertestError
 from tethertest.readers import load_scene
-from tethertest.readers.scenes.series import read_motion
+from tethertest.readers.config.scene_series import read_motion
 
 MOTION = """\
 motion = "harmonic"

@@ -5,7 +5,7 @@ import pytest
 
 from tethertest.errors import TethertestError
 from tethertest.readers import load_scene
-from tethertest.readers.scenes.series import read_wind
+from tethertest.readers.config.scene_series import read_wind
 
 TIME = np.arange(81) * 0.5
 GUST = 8.0 + 3.0 * np.sin(0.3 * TIME)

@@ -14,14 +14,14 @@ from tethertest.records.channel import Channel, Flag, Window
 from tethertest.records.events import Front
 from tethertest.records.lines import Event
 from tethertest.signal.blocks import block_means
-from tethertest.spectra.across import judge_steps
 from tethertest.spectra.arrivals import find_front, find_kink
+from tethertest.spectra.curve_steps import judge_steps
 from tethertest.spectra.events import find_events
-from tethertest.spectra.portraits import portrait
+from tethertest.spectra.phase_portrait import portrait
 from tethertest.spectra.regression import channel_blocks, fit_orders
 from tethertest.spectra.side_lines import swings_phase
 from tethertest.spectra.snaps import measured_snaps
-from tethertest.spectra.stroboscope import stroboscopic_section
+from tethertest.spectra.stroboscopic_section import stroboscopic_section
 from tethertest.spectra.wave_speed import wave_speed
 from tethertest.spectra.waves import Medium
 

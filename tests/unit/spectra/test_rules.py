@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from tethertest.records.channel import Window
-from tethertest.records.lines import ChannelLines, Course, Expectation, Line, LineVerdict
+from tethertest.records.lines import ChannelLines, Expectation, Line, LineVerdict, OrderTrack
 from tethertest.records.response import NaturalFrequency
 from tethertest.spectra.inputs import explain_by_input
 from tethertest.spectra.multitaper import MultitaperTest
 from tethertest.spectra.regression import Amplitude, stands_out
-from tethertest.spectra.stroboscope import Section
+from tethertest.spectra.stroboscopic_section import Section
 from tethertest.spectra.tracking import Tracking
 from tethertest.spectra.verdicts import Evidence, judge, length_needed
 
@@ -32,7 +32,7 @@ STEADY = Tracking(
     drift_error=0.01,
     thirds=1.0,
     departure=0.1,
-    course=Course(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING),
+    course=OrderTrack(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING),
     second_opinion=MultitaperTest(30.0, 1e-4),
 )
 LOCKED = Evidence(

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tethertest.records.across import Direction, Judgement, StepVerdict
-from tethertest.spectra.across import SHARE, judge_steps
-from tethertest.spectra.sweeps import branches, judge_loop, merged
+from tethertest.spectra.curve_branches import branches, judge_loop, merged
+from tethertest.spectra.curve_steps import SHARE, judge_steps
 
 FloatArray = np.ndarray
 

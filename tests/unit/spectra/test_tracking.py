@@ -10,7 +10,7 @@ import pytest
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import Channel, Window
 from tethertest.signal.sinusoid import fit_sinusoids
-from tethertest.spectra.loose import loosen
+from tethertest.spectra.order_demodulation import demodulate
 from tethertest.spectra.regression import OrderFit, channel_blocks, fit_orders
 from tethertest.spectra.tracking import Tracking, track
 
@@ -93,7 +93,7 @@ def test_few_cycles_explain_what_a_full_regression_does(channel: Maker, phase: f
     full = fit_sinusoids(fit.blocks, [*rest, 0.125 + offset], window.start, 3)
     weights = fit.blocks.weights
     gained = float(weights @ without.residuals**2 - weights @ full.residuals**2)
-    assert loosen(fit, HALF).explained(np.array([offset]))[0] == pytest.approx(gained, rel=2e-3)
+    assert demodulate(fit, HALF).explained(np.array([offset]))[0] == pytest.approx(gained, rel=2e-3)
 
 
 @pytest.mark.parametrize("share", [-1.7, -0.8, 0.35, 0.8, 1.7])

@@ -11,8 +11,8 @@ from tethertest.errors import QuantityError
 from tethertest.readers.config.mapping_checks import mapping_problems
 from tethertest.readers.config.problems import Problem
 from tethertest.readers.config.toml import KeyPath
-from tethertest.readers.text.layout import SPELLINGS
-from tethertest.readers.timeunits import is_time_unit
+from tethertest.readers.tables.text.layout import SPELLINGS
+from tethertest.readers.tables.time_units import is_time_unit
 from tethertest.records.run import Log
 from tethertest.units import channel_scale
 

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from tethertest.readers.config.problems import Problem
-from tethertest.readers.timeunits import CALENDARS, is_time_unit
+from tethertest.readers.tables.time_units import CALENDARS, is_time_unit
 from tethertest.records.run import Log
 
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")

@@ -9,10 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.table import listed, toml_text
-from tethertest.readers.containers.workbook import is_in
 from tethertest.readers.guards.zips import ZIP_MAGIC, member_stream, members, opened_zip
-from tethertest.readers.text.document import Head
+from tethertest.readers.tables.containers.table import listed, toml_text
+from tethertest.readers.tables.containers.workbook import is_in
+from tethertest.readers.tables.text.document import Head
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 

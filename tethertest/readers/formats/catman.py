@@ -11,12 +11,12 @@ import numpy.typing as npt
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.catman_header import MARK, Header, read_header
-from tethertest.readers.text.columns import read_columns
-from tethertest.readers.text.document import Head, read_document
-from tethertest.readers.text.rows import followed_lines
-from tethertest.readers.text.stamps import Stamps, parse_stamps, time_zone_of
-from tethertest.readers.text.table import Rows, check_widths, find_rows
-from tethertest.readers.timeunits import SECONDS
+from tethertest.readers.tables.text.columns import read_columns
+from tethertest.readers.tables.text.document import Head, read_document
+from tethertest.readers.tables.text.rows import followed_lines
+from tethertest.readers.tables.text.stamps import Stamps, parse_stamps, time_zone_of
+from tethertest.readers.tables.text.table import Rows, check_widths, find_rows
+from tethertest.readers.tables.time_units import SECONDS
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log

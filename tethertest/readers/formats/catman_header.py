@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.text.document import Document
-from tethertest.readers.text.table import is_number
-from tethertest.readers.timeunits import SECONDS
+from tethertest.readers.tables.text.document import Document
+from tethertest.readers.tables.text.table import is_number
+from tethertest.readers.tables.time_units import SECONDS
 
 MARK: Final = "HBM_CATMAN_DATAFILE"
 _CHANNEL_NUMBER = re.compile(r"\s*CH\s*=\s*\d+\s*$")

@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from tethertest.readers.channels import raw_channel, with_units
-from tethertest.readers.text.document import Head
-from tethertest.readers.text.rows import Growing, Tally, followed_lines, regrouped
-from tethertest.readers.text.table_log import TableLog, open_table
-from tethertest.readers.text.textlog import Progress
+from tethertest.readers.tables.text.document import Head
+from tethertest.readers.tables.text.rows import Growing, Tally, followed_lines, regrouped
+from tethertest.readers.tables.text.table_log import TableLog, open_table
+from tethertest.readers.tables.text.textlog import Progress
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from tethertest.readers.text.document import Head
+from tethertest.readers.tables.text.document import Head
 from tethertest.records.run import Log
 
 #: lines that only ENLIGHT writes above its data

@@ -10,11 +10,11 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, with_units
 from tethertest.readers.formats.enlight import find_preamble
 from tethertest.readers.guards.limits import COLUMNS
-from tethertest.readers.text.columns import Columns, read_columns
-from tethertest.readers.text.document import HEAD_BYTES, Head, read_document
-from tethertest.readers.text.rows import followed_lines
-from tethertest.readers.text.stamps import parse_stamps, time_zone_of
-from tethertest.readers.text.table import Rows, check_widths, find_rows
+from tethertest.readers.tables.text.columns import Columns, read_columns
+from tethertest.readers.tables.text.document import HEAD_BYTES, Head, read_document
+from tethertest.readers.tables.text.rows import followed_lines
+from tethertest.readers.tables.text.stamps import parse_stamps, time_zone_of
+from tethertest.readers.tables.text.table import Rows, check_widths, find_rows
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.formats.enlight import find_preamble
-from tethertest.readers.text.document import Head
+from tethertest.readers.tables.text.document import Head
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 

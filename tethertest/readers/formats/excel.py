@@ -6,12 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.log import log_of
-from tethertest.readers.containers.sheet import Sheet, sheet_of
-from tethertest.readers.containers.sheet_table import first_row, table_of_sheet
-from tethertest.readers.containers.table import listed, toml_text
-from tethertest.readers.containers.workbook import is_in, opened_workbook
-from tethertest.readers.text.document import Head
+from tethertest.readers.tables.containers.log import log_of
+from tethertest.readers.tables.containers.sheet import Sheet, sheet_of
+from tethertest.readers.tables.containers.sheet_table import first_row, table_of_sheet
+from tethertest.readers.tables.containers.table import listed, toml_text
+from tethertest.readers.tables.containers.workbook import is_in, opened_workbook
+from tethertest.readers.tables.text.document import Head
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 

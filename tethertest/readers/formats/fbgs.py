@@ -12,11 +12,11 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.fbgs_clock import line_clock
 from tethertest.readers.formats.fbgs_placing import is_wavelength, placed
-from tethertest.readers.text.columns import Columns, read_columns
-from tethertest.readers.text.document import Head, read_document
-from tethertest.readers.text.rows import followed_lines
-from tethertest.readers.text.stamps import parse_stamps, time_zone_of
-from tethertest.readers.text.table import Rows, check_widths, find_rows
+from tethertest.readers.tables.text.columns import Columns, read_columns
+from tethertest.readers.tables.text.document import Head, read_document
+from tethertest.readers.tables.text.rows import followed_lines
+from tethertest.readers.tables.text.stamps import parse_stamps, time_zone_of
+from tethertest.readers.tables.text.table import Rows, check_widths, find_rows
 from tethertest.records.arrays import BoolArray, frozen
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log

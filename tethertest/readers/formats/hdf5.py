@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from tethertest.errors import FileFormatError, TethertestError
-from tethertest.readers.containers.choice import table_of
-from tethertest.readers.containers.hdf5_tree import Walk, text_attribute
-from tethertest.readers.containers.log import log_of
-from tethertest.readers.containers.tree import Tree
 from tethertest.readers.guards.sandboxed_read import read_in_sandbox
-from tethertest.readers.text.document import Head, read_bytes
+from tethertest.readers.tables.containers.choice import table_of
+from tethertest.readers.tables.containers.hdf5_tree import Walk, text_attribute
+from tethertest.readers.tables.containers.log import log_of
+from tethertest.readers.tables.containers.tree import Tree
+from tethertest.readers.tables.text.document import Head, read_bytes
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 

@@ -14,15 +14,23 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers.choice import table_of
-from tethertest.readers.containers.log import log_of
-from tethertest.readers.containers.table import Column, Numbers
-from tethertest.readers.containers.tree import NAME_LISTS, UNIT_KEYS, Branch, Leaf, Records, Tree, facts_of
 from tethertest.readers.guards.limits import CELLS, COLUMNS, DEPTH, JSON_BYTES, JSON_LISTS, OBJECTS
-from tethertest.readers.text.cells import split_unit
-from tethertest.readers.text.document import Head, read_document
-from tethertest.readers.text.stamps import stamp_kind
-from tethertest.readers.text.table import MISSING_TOKENS
+from tethertest.readers.tables.containers.choice import table_of
+from tethertest.readers.tables.containers.log import log_of
+from tethertest.readers.tables.containers.table import Column, Numbers
+from tethertest.readers.tables.containers.tree import (
+    NAME_LISTS,
+    UNIT_KEYS,
+    Branch,
+    Leaf,
+    Records,
+    Tree,
+    facts_of,
+)
+from tethertest.readers.tables.text.cells import split_unit
+from tethertest.readers.tables.text.document import Head, read_document
+from tethertest.readers.tables.text.stamps import stamp_kind
+from tethertest.readers.tables.text.table import MISSING_TOKENS
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 

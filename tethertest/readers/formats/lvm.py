@@ -16,10 +16,10 @@ import numpy as np
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
 from tethertest.readers.formats.lvm_segments import Segment, find_segments
-from tethertest.readers.text.columns import read_columns
-from tethertest.readers.text.document import Document, Head, read_document
-from tethertest.readers.text.stamps import parse_stamps, time_zone_of
-from tethertest.readers.text.table import check_widths, find_rows
+from tethertest.readers.tables.text.columns import read_columns
+from tethertest.readers.tables.text.document import Document, Head, read_document
+from tethertest.readers.tables.text.stamps import parse_stamps, time_zone_of
+from tethertest.readers.tables.text.table import check_widths, find_rows
 from tethertest.records.arrays import FloatArray
 from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.run import DEFAULT, Log

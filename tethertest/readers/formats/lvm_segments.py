@@ -8,7 +8,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.text.document import Document
+from tethertest.readers.tables.text.document import Document
 from tethertest.records.arrays import FloatArray
 
 XColumns: TypeAlias = Literal["no", "one", "multi"]

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Final
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.containers import mat5, mat73
-from tethertest.readers.containers.choice import table_of
-from tethertest.readers.containers.log import log_of
-from tethertest.readers.containers.matlab_tree import Array, Item, Struct, tree_of
 from tethertest.readers.formats.hdf5 import opened
 from tethertest.readers.guards.sandboxed_read import read_in_sandbox
-from tethertest.readers.text.document import Head, read_bytes
+from tethertest.readers.tables.containers import mat5, mat73
+from tethertest.readers.tables.containers.choice import table_of
+from tethertest.readers.tables.containers.log import log_of
+from tethertest.readers.tables.containers.matlab_tree import Array, Item, Struct, tree_of
+from tethertest.readers.tables.text.document import Head, read_bytes
 from tethertest.records.channel import RawLog
 from tethertest.records.run import DEFAULT, Log
 

@@ -17,12 +17,12 @@ import numpy as np
 
 from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, unique_names, with_units
-from tethertest.readers.containers.table import listed, toml_text
 from tethertest.readers.guards.mdf_blocks import VIRTUAL, check_level_3, check_level_4
 from tethertest.readers.guards.sandboxed_read import read_in_sandbox
-from tethertest.readers.text.document import Head, read_bytes
-from tethertest.readers.text.stamps import time_zone_of
-from tethertest.readers.timeunits import SECONDS
+from tethertest.readers.tables.containers.table import listed, toml_text
+from tethertest.readers.tables.text.document import Head, read_bytes
+from tethertest.readers.tables.text.stamps import time_zone_of
+from tethertest.readers.tables.time_units import SECONDS
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.run import DEFAULT, Log

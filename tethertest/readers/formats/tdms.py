@@ -18,9 +18,9 @@ from tethertest.errors import FileFormatError
 from tethertest.readers.channels import raw_channel, with_units
 from tethertest.readers.formats.tdms_channels import Plan, planned
 from tethertest.readers.formats.tdms_time import Key, Piece
-from tethertest.readers.text.document import Head, opened
-from tethertest.readers.text.stamps import time_zone_of
-from tethertest.readers.text.textlog import Progress
+from tethertest.readers.tables.text.document import Head, opened
+from tethertest.readers.tables.text.stamps import time_zone_of
+from tethertest.readers.tables.text.textlog import Progress
 from tethertest.records.arrays import FloatArray, frozen
 from tethertest.records.channel import RawChannel, RawLog
 from tethertest.records.run import DEFAULT, Log

@@ -10,7 +10,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from tethertest.errors import FileFormatError
-from tethertest.readers.timeunits import SECONDS, epoch_start
+from tethertest.readers.tables.time_units import SECONDS, epoch_start
 from tethertest.records.arrays import FloatArray
 
 Key: TypeAlias = tuple[str, str]  # group and channel

@@ -37,7 +37,7 @@ from tethertest.render.figures.style import (
 from tethertest.render.scales import axis_label, scale_for
 from tethertest.render.text import number
 from tethertest.spectra.order_spectrogram import OrderSpectrogram
-from tethertest.spectra.portraits import Portrait
+from tethertest.spectra.phase_portrait import PhasePortrait
 from tethertest.spectra.spectrum import Spectrum
 
 _LEFT, _RIGHT, _BOTTOM, _TOP = 0.95, 0.25, 0.5, 0.56  #: margins [inch]
@@ -97,14 +97,14 @@ def spectrum_figure(
         return picture(figure, "Amplitude spectrum.", f"Amplitude spectrum of {name} with orders marked.")
 
 
-def portrait_figure(item: ChannelAnalysis, seen: Portrait) -> Picture:
+def portrait_figure(item: ChannelAnalysis, seen: PhasePortrait) -> Picture:
     """Return the phase portrait with the section's points, and the section period by period.
 
     Parameters
     ----------
     item : ChannelAnalysis
         The channel.
-    seen : Portrait
+    seen : PhasePortrait
         Its numbers.
     """
     with rc_context(RC):  # type: ignore[arg-type]

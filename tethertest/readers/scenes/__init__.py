@@ -1,1 +1,0 @@
-"""The measured series that a scene file names."""

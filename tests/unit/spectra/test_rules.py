@@ -32,7 +32,7 @@ STEADY = Tracking(
     drift_error=0.01,
     thirds=1.0,
     departure=0.1,
-    course=OrderTrack(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING),
+    track=OrderTrack(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING),
     second_opinion=MultitaperTest(30.0, 1e-4),
 )
 LOCKED = Evidence(

@@ -86,3 +86,8 @@ def test_sixteen_samples_are_the_fewest_of_a_blind_search(channel: Maker) -> Non
     assert blind_search(channel(time, cosine(time, 0.3)), Window(0.0, 15.0)).bandwidth == 0.25
     with pytest.raises(DataError, match="15 samples in the window"):
         blind_search(channel(time, cosine(time, 0.3)), Window(0.0, 14.5))
+
+
+def test_an_exponent_of_zero_is_none(channel: Maker) -> None:
+    with pytest.raises(DataError, match="found 0, expected a number above zero"):
+        count_cycles(channel(np.arange(9.0), SERIES), exponent=0.0)

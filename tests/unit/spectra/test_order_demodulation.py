@@ -79,3 +79,11 @@ def test_the_multitaper_test_sees_a_line_and_is_calibrated_without_one(
     assert np.mean(np.array(chances) < 0.1) == pytest.approx(0.1, abs=0.08)
     locked = cosine(time, 0.25) + cosine(time, 0.125, 0.2) + 0.05 * random.standard_normal(2048)
     assert multitaper_test(demodulate(fitted(channel(time, locked), window), HALF)).p_value < 1e-6
+
+
+def test_a_track_runs_on_the_channels_clock(channel: Maker, time: FloatArray) -> None:
+    late = 100.0 + time
+    values = cosine(time, 0.25) + cosine(time, 0.125, 0.5)
+    found = track_order(demodulate(fitted(channel(late, values), Window(100.0, 168.0)), HALF), 1e-6, 100.0)
+    assert np.mean(found.time) == pytest.approx(100.0 + 0.5 * time[-1], abs=0.5)
+    assert 100.0 < found.time[0] < 110.0

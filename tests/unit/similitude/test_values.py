@@ -9,7 +9,7 @@ import pytest
 
 from tethertest.errors import DataError
 from tethertest.readers import load_prototype, load_rig
-from tethertest.records.similarity import PiGroup
+from tethertest.records.similarity import PiGroup, Variable
 from tethertest.similitude import (
     Demand,
     Motion,
@@ -21,6 +21,7 @@ from tethertest.similitude import (
     tether_variables,
 )
 from tethertest.similitude.distortion import judged
+from tethertest.similitude.groups import diagnose
 from tethertest.similitude.rational import null_space, primitive, rank, reduced, solve
 
 RIGS = Path(__file__).parents[3] / "rigs"
@@ -241,3 +242,11 @@ def test_elimination_by_hand():
     assert primitive([Fraction(0), Fraction(0)]) == (0, 0)
     with pytest.raises(ValueError, match="argument 2"):
         solve(rows, [Fraction(2)])
+
+
+def test_a_defined_variable_is_redundant_only_where_the_set_has_all_it_is_made_of():
+    definition = {"a": {"Ae": Fraction(1), "w": Fraction(2)}}
+    every = [Variable("a", "m/s^2"), Variable("Ae", "m"), Variable("w", "1/s")]
+    assert diagnose(every, definition).redundant == ("a",)
+    assert diagnose(every[:2], definition).redundant == ()
+    assert diagnose(every[1:], definition).redundant == ()

@@ -115,7 +115,7 @@ def _slack_intervals(
 ) -> list[tuple[float, float]]:
     enter, leave = ENTER * zero, LEAVE * zero
     slack = _hysteresis(tension <= enter, tension > leave)
-    edges = np.flatnonzero(np.diff(slack.astype(np.int8), prepend=0, append=0))
+    edges = np.flatnonzero(np.diff(slack, prepend=False, append=False))
     merged: list[tuple[float, float]] = []
     for first, after in edges.reshape(-1, 2):
         last = int(first + np.flatnonzero(tension[first:after] <= enter)[-1])

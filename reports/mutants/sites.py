@@ -11,10 +11,6 @@ from difflib import SequenceMatcher
 from pathlib import Path
 from typing import Final
 
-from cosmic_ray.ast import ast_nodes, get_ast
-from cosmic_ray.mutating import mutate_code
-from cosmic_ray.operators.provider import OperatorProvider
-
 #: what a slip of the pen does; operators that only make nonsense (`a << b` for `a + b`) are left out
 OPERATORS: Final = (
     *(
@@ -63,6 +59,9 @@ def sample(root: Path, package: str, count: int, seed: int) -> list[Mutant]:
     seed : int
         The same seed draws the same mutants as long as the package does not change.
     """
+    from cosmic_ray.mutating import mutate_code  # of the extra `mutants`
+    from cosmic_ray.operators.provider import OperatorProvider
+
     draw = random.Random(f"{seed} {package}")
     places = [
         (path, options)
@@ -101,6 +100,9 @@ def mutant(root: Path, package: str, path: Path, changed: str) -> Mutant:
 
 def _places(source: str) -> Iterator[list[tuple[str, int]]]:
     """Yield for each place that can be changed its (operator, occurrence)."""
+    from cosmic_ray.ast import ast_nodes, get_ast
+    from cosmic_ray.operators.provider import OperatorProvider
+
     nodes = list(ast_nodes(get_ast(source)))
     skipped = _not_run(source)
     places: dict[tuple[int, int], list[tuple[str, int]]] = defaultdict(list)

@@ -265,7 +265,7 @@ def test_any_other_format_comes_in_one_piece(write):
 
 def test_keys_that_a_reader_does_not_use_are_refused(write, settings):
     path = write(LOGS["plain"][0])
-    with pytest.raises(FileFormatError, match=r"run\.toml gives table"):
+    with pytest.raises(FileFormatError, match="table is set, which the reader of delimited"):
         list(stream_log(path, settings(table="sheet")))
 
 

@@ -49,9 +49,9 @@ def test_any_damping_can_be_followed() -> None:
 
 
 def test_one_number_of_several_and_any_name_of_a_mode_can_be_moved() -> None:
-    platform = replace(RIG.platform, drag_area=(0.1, 0.2, 0.3), modes={"soft.v2": PlatformMode(50.0, 5.0)})
+    platform = replace(RIG.platform, drag_area=(0.1, 0.2), modes={"soft.v2": PlatformMode(50.0, 5.0)})
     uncertain = {"platform.drag_area[2]": 0.05, "platform.modes.soft.v2.hover_stiffness": 7.0}
     rig = replace(RIG, platform=platform, uncertainty=uncertain)
-    assert moved(rig, "platform.drag_area[2]").platform.drag_area == (0.1, 0.25, 0.3)
+    assert moved(rig, "platform.drag_area[2]").platform.drag_area == (0.1, 0.25)
     stiffer = moved(rig, "platform.modes.soft.v2.hover_stiffness").platform.modes["soft.v2"]
     assert stiffer == PlatformMode(57.0, 5.0)

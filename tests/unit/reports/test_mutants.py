@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("cosmic_ray", reason="of the extra `dev`")
+pytest.importorskip("cosmic_ray", reason="of the extra `mutants`")
 
 from reports.mutants import hand_made, table
 from reports.mutants.sites import Mutant, sample

@@ -91,7 +91,7 @@ stability: setup  ## writes reports/stability: runs of a million steps
 
 mutants: setup  ## faults put into the package one at a time: how many the tests notice
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[mutants]'  # one of its needs has no wheel
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m reports.mutants --jobs $(JOBS)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m reports.mutants --jobs $(JOBS) -o reports/mutants
 
 lint: setup  ## style, types, layers
 	$(BIN)/ruff format --check

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -27,8 +28,8 @@ TESTS: Final = {
 PACKAGES: Final = ("compare", "conditioning", "similitude", "spectra", "store")
 
 
-def main() -> int:
-    """Try the mutants and write the table."""
+def main(arguments: Sequence[str]) -> int:
+    """Try the mutants, print the table and write it where asked."""
     parser = argparse.ArgumentParser(prog="python -m reports.mutants", description=__doc__)
     parser.add_argument("--packages", nargs="+", choices=sorted(TESTS), help="those sampled where absent")
     parser.add_argument("--count", type=int, default=40, help="mutants of each package")
@@ -36,19 +37,19 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--limit", type=float, default=300.0, help="time for the tests of one mutant [s]")
     parser.add_argument("--hand-made", action="store_true", help="those of hand_made.toml, and no sample")
-    parser.add_argument("--output", type=Path, help="instead of the table in reports/mutants")
-    given = parser.parse_args()
+    parser.add_argument("-o", "--output", type=Path, help="folder for the table")
+    given = parser.parse_args(arguments)
     os.chdir(ROOT)
     packages = tuple(given.packages or (sorted(TESTS) if given.hand_made else PACKAGES))
     if given.hand_made:
         mutants, gone = hand_made(ROOT, packages)
         print("".join(f"gone from the code: {item}\n" for item in gone), end="", file=sys.stderr)
         title, how = "Mutants by hand", "The list of hand_made.toml."
-        command, output = "python -m reports.mutants --hand-made", Path(__file__).with_name("hand-made.md")
+        command, name = "python -m reports.mutants --hand-made", "hand-made.md"
     else:
-        mutants = [item for name in packages for item in sample(ROOT, name, given.count, given.seed)]
+        mutants = [item for package in packages for item in sample(ROOT, package, given.count, given.seed)]
         title, how = "Sampled mutants", f"{given.count} places of each package, drawn with seed {given.seed}."
-        command, output = "make mutants", Path(__file__).with_name("sampled.md")
+        command, name = "make mutants", "sampled.md"
     preload()
     for item in try_all([unchanged(ROOT, name) for name in packages], TESTS, given.jobs, given.limit):
         if item.killer != SURVIVED:
@@ -63,9 +64,13 @@ def main() -> int:
         if item.killer == SURVIVED:
             print(f"    {item.mutant.before}\n    {item.mutant.after}", flush=True)
     outcomes.sort(key=lambda item: (item.mutant.package, item.mutant.path, item.mutant.line))
-    (given.output or output).write_text(table(outcomes, title, how, command), encoding="utf-8")
+    page = table(outcomes, title, how, command)
+    print(page, end="")
+    if given.output is not None:
+        given.output.mkdir(parents=True, exist_ok=True)
+        (given.output / name).write_text(page, encoding="utf-8")
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

@@ -9,6 +9,12 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh_tridiagonal, expm
 
+from tests.verification.closed_forms import (
+    hanging_frequencies,
+    irvine_caughey_frequencies,
+    irvine_caughey_roots,
+    irvine_parameter,
+)
 from tethertest.records.arrays import FloatArray
 from tethertest.records.cable import Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
@@ -21,13 +27,9 @@ from tethertest.solver.linear.coupled import (
 )
 from tethertest.solver.modal.coupled_modes import (
     coupled_modes,
-    hanging_frequencies,
     in_plane_count,
     in_plane_frequencies,
     in_plane_modes,
-    irvine_caughey_frequencies,
-    irvine_caughey_roots,
-    irvine_parameter,
     out_of_plane_frequencies,
 )
 

@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from tests.verification.closed_forms import hanging_frequencies, irvine_caughey_roots
 from tethertest.records.cable import Air, Cable
 from tethertest.records.scene import Bottom, Geometry, Output, Scene, Top
 from tethertest.solver.linear.coupled import CoupledCable
 from tethertest.solver.modal.chain_modes import lowest_frequencies
 from tethertest.solver.modal.coupled_modes import (
-    hanging_frequencies,
     in_plane_frequencies,
-    irvine_caughey_roots,
 )
 from tethertest.solver.modal.modes import modes
 from tethertest.solver.statics.equilibrium import rest_chain

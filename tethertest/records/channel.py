@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime as dt
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntFlag, StrEnum
 from pathlib import Path
@@ -337,8 +336,3 @@ class ConditionedRun:
         shown = [channel for channel in self.channels if channel.kind == kind]
         lines = [(c.time, np.where(c.usable, c.values, np.nan), c.name) for c in shown]
         return drawn(axes, lines, f"{kind} [{shown[0].unit}]" if shown else kind)
-
-
-def findings_about(findings: Sequence[Finding], subject: str) -> tuple[Finding, ...]:
-    """Return the findings about one channel or clock."""
-    return tuple(finding for finding in findings if finding.subject == subject)

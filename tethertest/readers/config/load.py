@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from tethertest.errors import RunFileError
 from tethertest.readers.calibration import with_calibrations
@@ -30,7 +30,6 @@ RUN_FILE = "run.toml"
 RIGS_FOLDER = "rigs"
 
 Record = TypeVar("Record")
-Checks = Callable[[Any], Iterable[Problem]]
 
 
 def load_scene(path: Path | str) -> Scene:

@@ -49,7 +49,7 @@ def main(arguments: Sequence[str]) -> int:
     else:
         mutants = [item for package in packages for item in sample(ROOT, package, given.count, given.seed)]
         title, how = "Sampled mutants", f"{given.count} places of each package, drawn with seed {given.seed}."
-        command, name = "make mutants", "sampled.md"
+        command, name = f"python -m reports.mutants --count {given.count} --seed {given.seed}", "sampled.md"
     preload()
     for item in try_all([unchanged(ROOT, name) for name in packages], TESTS, given.jobs, given.limit):
         if item.killer != SURVIVED:

@@ -173,7 +173,7 @@ def _missing_order(subject: Subject, order: str, amplitude: bool, phase: bool) -
     missing = []
     if amplitude:
         limit = limits.order_amplitude.get(order) if subject.limited else None
-        missing.append(undecided(f"order_amplitude {order}", name, "1", limit, reason))
+        missing.append(undecided(f"order_amplitude {order}", name, subject.measured.unit, limit, reason))
     if phase:
         limit = limits.order_phase.get(order) if subject.limited else None
         missing.append(undecided(f"order_phase {order}", name, "rad", limit, reason))

@@ -301,6 +301,7 @@ def test_an_order_that_was_not_resolved_and_has_no_amplitude_is_missing() -> Non
     third = named(found, "order_amplitude 3")
     assert (third.verdict, third.limit) == (Verdict.UNDECIDED, 0.3)
     assert third.reason == "order 3 was not fitted on both sides"
+    assert third.unit == "N"
     seen = replace(unresolved, amplitude=0.08)
     judged = named(order_metrics(ordered(measured_lines=lines(seen))), "order_amplitude 3")
     assert judged.error == pytest.approx(0.25)

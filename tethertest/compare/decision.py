@@ -1,6 +1,7 @@
 """From an error, its uncertainty and a limit to a verdict with words.
 
-The uncertainty of validation follows ASME V&V 20: ``u_val^2 = u_num^2 + u_input^2 + u_D^2``. An error within
+The uncertainty of validation follows ASME V&V 20: ``u_val^2 = u_num^2 + u_input^2 + u_D^2``; of a cable that
+goes slack the input nobody knows, how straight it hangs, is stated by itself. An error within
 `RESOLUTION_FACTOR` u_val is "not resolved at this noise": the data cannot say how wrong the replay is, only
 that it is no more wrong than that. It still passes a limit that is wider than error and uncertainty together.
 
@@ -32,11 +33,12 @@ class Uncertainty:
     data: float = 0.0  #: calibration and noise of the measurement
     inputs: float = 0.0  #: uncertain parameters of the rig
     numerical: float = 0.0  #: of the replay's scheme
+    slack: float = 0.0  #: what nobody knows of a slack cable: how straight it hangs, its damping
 
     @property
     def total(self) -> float:
         """u_val."""
-        return float(np.sqrt(self.data**2 + self.inputs**2 + self.numerical**2))
+        return float(np.sqrt(self.data**2 + self.inputs**2 + self.numerical**2 + self.slack**2))
 
 
 def decide(
@@ -68,8 +70,10 @@ def decide(
         With value, limit and distance in words.
     """
     size, total = abs(error), uncertainty.total
-    parts = (uncertainty.data, uncertainty.inputs, uncertainty.numerical)
-    budget = "data {}, rig {}, numerical {}".format(*(_words(part, angle) for part in parts))
+    parts = {"data": uncertainty.data, "rig": uncertainty.inputs, "numerical": uncertainty.numerical}
+    if uncertainty.slack > 0.0:
+        parts["slack"] = uncertainty.slack
+    budget = ", ".join(f"{name} {_words(part, angle)}" for name, part in parts.items())
     unresolved = "; not resolved at this noise" if size <= RESOLUTION_FACTOR * total else ""
     sign = "-" if error < 0.0 else "+"
     found = f"error {sign}{_words(size, angle)} ± {_words(total, angle)} ({budget})"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from operator import attrgetter
 from typing import Final
 
 import numpy as np
@@ -52,6 +53,7 @@ def sprague_geers_metrics(subject: Subject) -> list[Metric]:
         found = _sprague_geers(subject, subject.pair)
         plain = _sprague_geers(subject, subject.pair, 1.0 + NOISE_UNCERTAINTY)
         moved = [_sprague_geers(subject, pair) for pair in subject.moved_pairs]
+        members = [_sprague_geers(subject, pair) for pair in subject.member_pairs]
     except DataError as error:
         reason = f"{error.problem}; {note}"
         name = subject.measured.name
@@ -68,15 +70,20 @@ def sprague_geers_metrics(subject: Subject) -> list[Metric]:
             ]
         )
     )
-    combined = subject.budget(data, found.combined, [item.combined for item in moved])
+    combined = subject.budget(
+        data, found.combined, [item.combined for item in moved], [item.combined for item in members]
+    )
     metrics = [
         subject.metric("sprague_geers", "1", None, None, found.combined, combined, limit, note),
     ]
-    for name, value, values in (
-        ("sprague_geers_magnitude", found.magnitude, [item.magnitude for item in moved]),
-        ("sprague_geers_phase", found.phase, [item.phase for item in moved]),
+    for name, part_of in (
+        ("sprague_geers_magnitude", attrgetter("magnitude")),
+        ("sprague_geers_phase", attrgetter("phase")),
     ):
-        part = subject.budget(data, value, values)
+        value = part_of(found)
+        part = subject.budget(
+            data, value, [part_of(item) for item in moved], [part_of(item) for item in members]
+        )
         metrics.append(subject.metric(name, "1", None, None, value, part, None))
     return metrics
 
@@ -87,20 +94,19 @@ def order_metrics(subject: Subject) -> list[Metric]:
     phases = sorted({*PHASE_ORDERS, *subject.limits.order_phase}, key=Fraction)
     wanted = sorted({*amplitudes, *phases}, key=Fraction)
     frequencies = [float(Fraction(order)) * subject.drive for order in wanted]
-    replays = [
-        phasors(channel, subject.window, frequencies) for channel in (subject.replayed, *subject.moved)
-    ]
+    sides = ((subject.replayed, *subject.moved), subject.members)
+    fits = [[phasors(channel, subject.window, frequencies) for channel in side] for side in sides]
     metrics = []
     for order, frequency in zip(wanted, frequencies, strict=True):
-        values = [item[frequency] for item in replays]
+        values, members = ([fit[frequency] for fit in side] for side in fits)
         measured, replayed = _lines_of(subject, order)
         if measured is None or replayed is None:
             metrics += _missing_order(subject, order, order in amplitudes, order in phases)
             continue
         if order in amplitudes:
-            metrics.append(_amplitude_metric(subject, order, measured, replayed, values))
+            metrics.append(_amplitude_metric(subject, order, measured, replayed, values, members))
         if order in phases:
-            metrics.append(_phase_metric(subject, order, measured, replayed, values))
+            metrics.append(_phase_metric(subject, order, measured, replayed, values, members))
     return metrics
 
 
@@ -181,7 +187,12 @@ def _missing_order(subject: Subject, order: str, amplitude: bool, phase: bool) -
 
 
 def _amplitude_metric(
-    subject: Subject, order: str, measured: Line, replayed: Line, replays: Sequence[complex]
+    subject: Subject,
+    order: str,
+    measured: Line,
+    replayed: Line,
+    replays: Sequence[complex],
+    members: Sequence[complex],
 ) -> Metric:
     name, unit = f"order_amplitude {order}", subject.measured.unit
     limit = subject.limits.order_amplitude.get(order)
@@ -212,18 +223,27 @@ def _amplitude_metric(
     ratio = replayed.amplitude / base
     data = ratio * float(np.hypot(measured.standard_error / base, subject.measured.uncertainty))
     found = [abs(value) / base for value in replays]
-    uncertainty = subject.budget(float(np.hypot(data, replayed.standard_error / base)), found[0], found[1:])
+    data = float(np.hypot(data, replayed.standard_error / base))
+    uncertainty = subject.budget(data, found[0], found[1:], [abs(value) / base for value in members])
     return subject.metric(name, unit, measured.amplitude, replayed.amplitude, ratio - 1.0, uncertainty, limit)
 
 
 def _phase_metric(
-    subject: Subject, order: str, measured: Line, replayed: Line, replays: Sequence[complex]
+    subject: Subject,
+    order: str,
+    measured: Line,
+    replayed: Line,
+    replays: Sequence[complex],
+    members: Sequence[complex],
 ) -> Metric:
     error = order_error(measured, replayed)
     clock = 2.0 * np.pi * measured.frequency * subject.clock_error
-    turned = [wrapped(float(np.angle(value)) - float(np.angle(replays[0]))) for value in replays]
+    turned, bowed = (
+        [wrapped(float(np.angle(value)) - float(np.angle(replays[0]))) for value in side]
+        for side in (replays, members)
+    )
     data = float(np.hypot(min(error.phase_uncertainty, np.pi), clock))
-    uncertainty = subject.budget(data, turned[0], turned[1:])
+    uncertainty = subject.budget(data, turned[0], turned[1:], bowed)
     limit = subject.limits.order_phase.get(order)
     return subject.metric(
         f"order_phase {order}", "rad", measured.phase, replayed.phase, error.phase, uncertainty, limit

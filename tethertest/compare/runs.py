@@ -45,6 +45,7 @@ def compare(
     variations: Sequence[Sequence[Channel]] = (),
     static: Mapping[str, float] | None = None,
     zero_uncertainty: float = ZERO_UNCERTAINTY,
+    members: Sequence[Sequence[Channel]] = (),
 ) -> Comparison:
     """Hold a replay against its measurement and give a verdict.
 
@@ -67,6 +68,9 @@ def compare(
         their own means.
     zero_uncertainty : float
         Of the tension channels' zero, for slack [N].
+    members : sequence of sequence of Channel
+        Replays of a cable that goes slack, on a coarser mesh: the nominal one first, then others of what
+        nobody knows of it. ``u_slack^2`` is the mean square of ``metric(member) - metric(nominal)``.
 
     Returns
     -------
@@ -98,6 +102,7 @@ def compare(
             drive,
             limits,
             variations,
+            members,
             static or {},
         )
         if isinstance(subject, str):
@@ -105,6 +110,7 @@ def compare(
             continue
         if subject.limited:
             unusable[name] = _unusable_share(subject.measured, subject.window)
+            unusable[f"replay of {name}"] = _unusable_share(subject.replayed, subject.window)
             metrics.append(peak_metric(subject))
         metrics += order_metrics(subject)
         metrics += sprague_geers_metrics(subject)
@@ -121,6 +127,7 @@ def _subject(
     drive: float,
     limits: Limits,
     variations: Sequence[Sequence[Channel]],
+    members: Sequence[Sequence[Channel]],
     static: Mapping[str, float],
 ) -> Subject | str:
     """Return a channel ready for its metrics, or why it cannot be compared."""
@@ -133,10 +140,12 @@ def _subject(
     if band is None:
         return f"no usable sample in the window from {window.start:g} s to {window.stop:g} s"
     pair = pair_with(band, other)
-    if pair is None:
-        return f"the replay does not cover the window from {window.start:g} s to {window.stop:g} s"
-    found = (_named(channels, name) for channels in variations)
-    moved = tuple(channel for channel in found if channel is not None)
+    if isinstance(pair, str):
+        return f"{pair} from {window.start:g} s to {window.stop:g} s"
+    moved, of_slack = (
+        tuple(channel for channels in side for channel in channels if channel.name == name)
+        for side in (variations, members)
+    )
     return Subject(
         measured=own,
         replayed=other,
@@ -147,6 +156,8 @@ def _subject(
         replayed_lines=_lines_named(lines[1], name),
         moved=moved,
         moved_pairs=paired(band, moved),
+        members=of_slack,
+        member_pairs=paired(band, of_slack),
         clock_error=max((clock.offset_error for clock in measured.clocks), default=0.0),
         static=static.get(name),
         limits=limits,

@@ -28,6 +28,8 @@ class Subject:
     replayed_lines: ChannelLines | None
     moved: tuple[Channel, ...]  #: on a coarser mesh: nominal first, then one parameter moved at a time
     moved_pairs: tuple[Pair, ...]  #: of `moved`
+    members: tuple[Channel, ...]  #: of a slack cable on a coarser mesh: nominal first, then what nobody knows
+    member_pairs: tuple[Pair, ...]  #: of `members`
     clock_error: float  #: standard uncertainty of the time between bottom motion and this channel [s]
     static: float | None  #: tension at rest [N]
     limits: Limits
@@ -39,7 +41,9 @@ class Subject:
             return 0.0
         return float(np.sqrt(np.sum((np.array(values[1:]) - values[0]) ** 2)))
 
-    def budget(self, data: float, value: float, values: Sequence[float]) -> Uncertainty:
+    def budget(
+        self, data: float, value: float, values: Sequence[float], members: Sequence[float] = ()
+    ) -> Uncertainty:
         """Return the uncertainty of a metric.
 
         Parameters
@@ -50,13 +54,20 @@ class Subject:
             The metric of the replay itself.
         values : sequence of float
             The metric of `moved`: the first differs from `value` by the mesh alone.
+        members : sequence of float
+            The metric of `members`: the others are draws of what nobody knows, as far from the first as this
+            one may be from the truth.
         """
         numerical = abs(value - values[0]) if values else 0.0
-        return Uncertainty(data, self.input_uncertainty(values), numerical)
+        slack = 0.0
+        if len(members) > 1:
+            slack = float(np.sqrt(np.mean((np.array(members[1:]) - members[0]) ** 2)))
+        return Uncertainty(data, self.input_uncertainty(values), numerical, slack)
 
     def over_pairs(self, data: float, metric: Callable[[Pair], float]) -> Uncertainty:
         """Return the uncertainty of a metric of a `Pair`."""
-        return self.budget(data, metric(self.pair), [metric(pair) for pair in self.moved_pairs])
+        moved, members = ([metric(pair) for pair in pairs] for pairs in (self.moved_pairs, self.member_pairs))
+        return self.budget(data, metric(self.pair), moved, members)
 
     def metric(
         self,
@@ -97,4 +108,4 @@ def undecided(name: str, channel: str, unit: str, limit: float | None, reason: s
 def paired(band: Band, channels: Sequence[Channel]) -> tuple[Pair, ...]:
     """Pair a measurement with several replays, leaving out those that do not cover the window."""
     pairs = (pair_with(band, channel) for channel in channels)
-    return tuple(pair for pair in pairs if pair is not None)
+    return tuple(pair for pair in pairs if not isinstance(pair, str))

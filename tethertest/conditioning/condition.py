@@ -62,7 +62,7 @@ def condition(run: Run, logs: Mapping[str, RawLog], priors: RigPriors) -> Condit
         Names, units, stamps, calibration or windows are wrong in a way that only a person can mend.
     """
     channels, clocks, findings = _on_one_clock(run, logs, priors)
-    windows = windows_of(run, channels, priors.drive_frequency)
+    windows = windows_of(run, channels, priors.drive_frequency, priors.motion_reach)
     findings += windows.findings
     channels, found = finished(with_steps_flagged(channels), run.rig, priors, windows)
     findings += (*found, *negative_tension_findings(channels, run.rig))

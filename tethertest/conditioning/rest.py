@@ -18,6 +18,10 @@ from tethertest.signal.windows import FEWEST_CYCLES, SHORTEST_REST, Steady, find
 MOTION_KINDS = ("displacement", "tension", "wavelength")
 #: a steady window set by hand may reach this far beyond the record [s]
 OUTSIDE = 0.05
+#: a steady window that is found stays so far inside the tensions [s], where the comparison's low-pass ends
+RECORD_END = 0.1
+#: share of a cycle that a whole number of them may lack
+WHOLE = 1e-6
 #: a record that lacks more than this share of its samples is told to do so where no drive is found in it
 TOLD_MISSING = 0.01
 
@@ -32,7 +36,9 @@ class RunWindows:
     findings: tuple[Finding, ...] = ()  #: about windows set by hand
 
 
-def windows_of(run: Run, channels: Sequence[Channel], frequency: float | None) -> RunWindows:
+def windows_of(
+    run: Run, channels: Sequence[Channel], frequency: float | None, motion_reach: float = 0.0
+) -> RunWindows:
     """Return the run's windows.
 
     Parameters
@@ -43,6 +49,9 @@ def windows_of(run: Run, channels: Sequence[Channel], frequency: float | None) -
         Channels on the run's clock; the bottom displacement shows the motion best, else a tension.
     frequency : float or None
         Drive frequency [Hz]; None takes the run file's.
+    motion_reach : float
+        The steady window stays so far inside the record of the motion [s], within which no replay can follow
+        it, and inside the tensions by the reach of their low-pass.
 
     Raises
     ------
@@ -76,8 +85,23 @@ def windows_of(run: Run, channels: Sequence[Channel], frequency: float | None) -
         tension = next((channel for channel in channels if channel.kind == "tension"), None)
         if tension is not None:
             span = settled_from(tension, span)
+        span = _inside(span, channels, motion, motion_reach)
         steady = Window(*span.span, f"{found}: {_words(span)}")
     return RunWindows(before, after, steady, findings)
+
+
+def _inside(steady: Steady, channels: Sequence[Channel], motion: Channel, motion_reach: float) -> Steady:
+    """Return the steady window away from the ends of the records that are compared in it."""
+    start, stop = steady.span
+    for channel in channels:
+        if channel is motion or channel.kind == "tension":
+            away = motion_reach if channel is motion else RECORD_END
+            start = max(start, float(channel.time[0]) + away)
+            stop = min(stop, float(channel.time[-1]) - away)
+    cycles = int((stop - start) * steady.frequency + WHOLE)
+    if (start, stop) == steady.span or cycles < FEWEST_CYCLES:
+        return steady
+    return Steady((stop - cycles / steady.frequency, stop), steady.frequency, steady.amplitude, cycles)
 
 
 def _check_by_hand(run: Run, channels: Sequence[Channel], motion: Channel) -> tuple[Finding, ...]:

@@ -31,6 +31,8 @@ class RigPriors:
     tension_changes: Callable[[FloatArray, float], tuple[FloatArray, ...]] = no_changes
     #: frequency [Hz] and place, a fraction of the length -> tension there over bottom displacement [N/m]
     tension_over_motion: Callable[[float, float], float] | None = None
+    #: how far from an end of the record with the drive running its motion drives no replay [s]
+    motion_reach: float = 0.0
     reference_clock: str = "daq"
     drive_frequency: float | None = None  #: [Hz]; None takes the run file's
     mains: float = 50.0  #: [Hz]

@@ -41,6 +41,8 @@ from tethertest.replay import (
     BottomMotion,
     bottom_motion,
     expected_bottom_tension,
+    member_channels,
+    motion_reach,
     replayed_channels,
     rest_tensions,
     run_scene,
@@ -169,6 +171,7 @@ class Evaluation:
             self.heave,
             frequency=None if self.drive is None else self.drive.frequency,
             rest_before=self.conditioned.rest_before,
+            rest_after=self.conditioned.rest_after,
             steady=self.conditioned.steady,
         )
 
@@ -201,7 +204,7 @@ class Evaluation:
         """Replayed tensions and strains, at the places and times of the measured ones."""
         if self.motion is None or self.response is None:
             return ()
-        return replayed_channels(self.response, self.motion.start, self.conditioned.channels)
+        return replayed_channels(self.response, self.motion, self.conditioned.channels)
 
     @cached_property
     def moved(self) -> tuple[tuple[Channel, ...], ...]:
@@ -211,6 +214,13 @@ class Evaluation:
         coarser = max(FIRST_MESH, self.response.cells // 2)
         varied = variations(self.run, self.motion, self.conditioned.channels, coarser, self.response.fidelity)
         return tuple(variation.channels for variation in varied)
+
+    @cached_property
+    def members(self) -> tuple[tuple[Channel, ...], ...]:
+        """Replays of a cable that goes slack, by what nobody knows of it, the nominal one first."""
+        if self.motion is None or self.response is None:
+            return ()
+        return member_channels(self.response, self.motion, self.conditioned.channels)
 
     @cached_property
     def motion_lines(self) -> ChannelLines | None:
@@ -253,6 +263,7 @@ class Evaluation:
             self.lines(self.replayed, REPLAYED),
             self.run.rig.limits,
             variations=self.moved,
+            members=self.members,
             static=rest_tensions(self.run.rig),
         )
         if self.response is None:
@@ -364,6 +375,7 @@ def rig_priors(run: Run) -> RigPriors:
         expected_tension=expected_bottom_tension(run),
         tension_changes=tension_changes(run),
         tension_over_motion=tension_over_motion(run),
+        motion_reach=motion_reach(run.file.drive.frequency),
         drive_frequency=run.file.drive.frequency,
     )
 

@@ -102,6 +102,9 @@ class Response:
     numbers: dict[str, float] = a_field(default_factory=dict)
     native_times: bool = False  #: `time` holds the scheme's own levels, not t = k/rate
     snap: SnapPeak | None = None  #: of the nonlinear model, where the cable goes slack
+    #: (n, g) tension [N] of a slack cable on a coarser mesh: nominal, then with bows and dampings that nobody
+    #: knows; empty where they were not run
+    members: tuple[FloatArray, ...] = ()
 
     def to_pandas(self) -> pd.DataFrame:
         """Return tension and strain at the gauges over time [s], named as in the CSV: ``tension_N@0.25``."""

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from tethertest.errors import DataError
-from tethertest.records.arrays import FloatArray
-from tethertest.records.channel import Channel, Source
+from tethertest.records.arrays import BoolArray, FloatArray
+from tethertest.records.channel import Channel, Flag, Source
 from tethertest.records.response import Response, Status
 from tethertest.records.run import Run
-from tethertest.replay.motion import bottom_motion
+from tethertest.replay.motion import BottomMotion, bottom_motion
 from tethertest.replay.scene import run_scene
 from tethertest.solver import solve
 from tethertest.units import Kind
@@ -21,15 +21,17 @@ from tethertest.units import Kind
 _ALIGNMENT_CELLS = 20
 
 
-def replayed_channels(response: Response, start: float, measured: Sequence[Channel]) -> tuple[Channel, ...]:
+def replayed_channels(
+    response: Response, motion: BottomMotion, measured: Sequence[Channel]
+) -> tuple[Channel, ...]:
     """Return one replayed channel for each measured tension and strain.
 
     Parameters
     ----------
     response : Response
-        Replay of the run, from its time zero.
-    start : float
-        Run time of the replay's time zero [s].
+        Replay of the run, from the motion's time zero.
+    motion : BottomMotion
+        What drove it. Where that is not known, the samples are flagged as missing.
     measured : sequence of Channel
         Measured channels on the run's clock; each gives place and times. Times that the replay does not reach
         are left out.
@@ -40,6 +42,7 @@ def replayed_channels(response: Response, start: float, measured: Sequence[Chann
         The solve left the range of numbers: what it holds after that is nothing.
     """
     _check_finished(response)
+    start = motion.start
     replayed = []
     for channel in measured:
         if channel.kind not in {"tension", "strain"} or channel.at is None:
@@ -49,8 +52,27 @@ def replayed_channels(response: Response, start: float, measured: Sequence[Chann
         first, last = np.searchsorted(channel.time, [start, start + response.time[-1]])
         time = channel.time[first:last]
         values = np.interp(time - start, response.time, series[:, gauge])
-        replayed.append(_channel(channel, time, values, response.scheme))
+        answered = _channel(channel, time, values, response.scheme)
+        replayed.append(answered.with_flags(_within(time, motion.unknown), Flag.MISSING))
     return tuple(replayed)
+
+
+def member_channels(
+    response: Response, motion: BottomMotion, measured: Sequence[Channel]
+) -> tuple[tuple[Channel, ...], ...]:
+    """Return `replayed_channels` of each member of a slack cable's replay, the nominal one first.
+
+    They differ by what nobody knows of a slack cable, as how straight it hangs. Their strain is the
+    tension's, without the little that damping adds.
+    """
+    stiffness = response.scene.cable.axial_stiffness
+    if stiffness is None:
+        return ()
+    answers = (
+        replace(response, tension=tension, strain=(tension - tension[0]) / stiffness)
+        for tension in response.members
+    )
+    return tuple(replayed_channels(answer, motion, measured) for answer in answers)
 
 
 def expected_bottom_tension(run: Run) -> Callable[[Channel], Channel]:
@@ -73,6 +95,14 @@ def expected_bottom_tension(run: Run) -> Callable[[Channel], Channel]:
         return replace(answered, name="expected bottom tension", kind=Kind.TENSION, unit="N", at=0.0)
 
     return answer
+
+
+def _within(time: FloatArray, spans: Sequence[tuple[float, float]]) -> BoolArray:
+    """Return which times lie in any of the spans."""
+    inside = np.zeros(time.size, dtype=np.bool_)
+    for start, stop in spans:
+        inside |= (time >= start) & (time <= stop)
+    return inside
 
 
 def _check_finished(response: Response) -> None:

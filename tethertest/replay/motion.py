@@ -7,7 +7,6 @@ noise, and the wide band is kept only where something sudden happened, as at the
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +15,15 @@ from tethertest.errors import DataError
 from tethertest.records.arrays import BoolArray, FloatArray
 from tethertest.records.channel import Channel, Window
 from tethertest.records.scene import MeasuredMotion
-from tethertest.signal.filters import filled
+from tethertest.replay.record_ends import (
+    Span,
+    continued,
+    holes_of,
+    lead_in,
+    record_from_rest,
+    with_holes_filled,
+)
+from tethertest.signal.flat_pass import HALF_PERIODS, REACH_PERIODS, flat_passed
 
 #: band kept where something sudden happens [Hz]; a marker tap of 60 ms has little above it
 WIDE_BAND = 40.0
@@ -26,8 +33,6 @@ KEPT_ORDERS = 3.5
 LOWEST_CUTOFF = 2.0
 #: a line of the encoder counts as motion when its power density is this many times the noise floor
 ABOVE_NOISE = 30.0
-#: width of the transition band over the cut-off, and the ripple of the pass band [dB below 1]
-TRANSITION, RIPPLE = 0.5, 80.0
 #: motion outside the drive's band is sudden when it stands out of the noise by this factor
 SUDDEN_SIGMAS = 8.0
 #: and keeps the wide band this far around it [s], faded in and out over `FADE` [s]
@@ -36,18 +41,27 @@ SUDDEN_REACH, FADE = 0.15, 0.1
 DEVIATION_OF_MEDIAN = 1.4826
 
 
+#: a hole shorter than this many periods of the cut-off is bridged to a thousandth of the drive
+SHORT_HOLE = 0.1
+#: motion that repeats itself is known beside a longer hole, but for this many periods of the cut-off
+BESIDE_HOLE = 0.5
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class BottomMotion:
     """Smooth bottom displacement from rest, on the run's clock."""
 
-    start: float  #: run time of the motion's time zero [s]
+    start: float  #: run time of the motion's time zero [s], before the record where the drive is led in
     motion: MeasuredMotion
     cutoff: float  #: [Hz], band kept of the drive
     wide_cutoff: float  #: [Hz], band kept where something sudden happens
+    unknown: tuple[
+        Span, ...
+    ] = ()  #: run times where it is no measurement: near a moving end and in holes [s]
 
     @property
     def duration(self) -> float:
-        """Length of the record [s]."""
+        """Length of the motion [s]."""
         return float(self.motion.time[-1])
 
 
@@ -56,9 +70,15 @@ def bottom_motion(
     *,
     frequency: float | None,
     rest_before: Window | None = None,
+    rest_after: Window | None = None,
     steady: Window | None = None,
 ) -> BottomMotion:
     """Return the measured bottom displacement as the solver takes it.
+
+    Where the record begins or ends with the drive running, the drive is continued as it repeats itself: led
+    in from rest before the first sample, so that the replay meets the record in its steady state, and past
+    the last one, so that no filter invents a stop. What lies within the reach of the low-pass from such an
+    end is not known, nor are long holes.
 
     Parameters
     ----------
@@ -66,8 +86,8 @@ def bottom_motion(
         Bottom displacement [m].
     frequency : float or None
         Drive frequency [Hz]; None where there is no drive.
-    rest_before, steady : Window or None
-        Windows of the run; displacement counts from the rest before the drive.
+    rest_before, rest_after, steady : Window or None
+        Windows of the run; displacement counts from the rest before the drive, else from that after it.
 
     Raises
     ------
@@ -77,68 +97,67 @@ def bottom_motion(
     if np.count_nonzero(heave.usable) < 10:
         message = f"channel {heave.name!r} has {np.count_nonzero(heave.usable)} usable samples"
         raise DataError(message, "the replay needs the bottom motion: export the encoder's log again")
-    rate = heave.rate
-    count = int((heave.time[-1] - heave.time[0]) * rate) + 1
-    time = np.arange(count, dtype=np.float64) / rate
-    start = float(heave.time[0])
-    values = np.interp(time, heave.time - start, filled(heave))
-    at_rest = time < 1.0 if rest_before is None else time <= rest_before.stop - start
-    values = values - float(np.median(values[at_rest])) if at_rest.any() else values - values[0]
+    lowest = _lowest_cutoff(frequency)
+    holes = holes_of(heave, SHORT_HOLE / lowest)
+    record, were_filled = with_holes_filled(
+        record_from_rest(heave, frequency, rest_before, rest_after), holes
+    )
+    starts_moving, ends_moving = record.starts_moving, record.ends_moving
+    lead = lead_in(record) if starts_moving else np.zeros(0)
+    tail = continued(record, HALF_PERIODS / lowest) if ends_moving else np.zeros(0)
+    values = np.concatenate((lead, record.values, tail))
+    time = record.time[0] + (np.arange(values.size) - lead.size) / record.rate
 
-    cutoff = _drive_band(values, rate, frequency, time + start, steady)
-    sudden = _sudden(values - _passed(values, rate, cutoff), rate)
-    calm = values if sudden.all() else np.interp(time, time[~sudden], values[~sudden])
-    share = _faded(sudden, rate)
-    smooth = share * _passed(values, rate, WIDE_BAND) + (1.0 - share) * _passed(calm, rate, cutoff)
-    fade_in = np.clip(time / FADE, 0.0, 1.0)
+    cutoff = _drive_band(values, record.rate, frequency, time, steady)
+    smooth = _smoothed(values, record.rate, cutoff)[: values.size - tail.size]
+    after_start = np.arange(smooth.size) / record.rate
+    fade_in = np.clip(after_start / FADE, 0.0, 1.0)
     smooth = smooth * fade_in**2 * (3.0 - 2.0 * fade_in)
-    return BottomMotion(start, MeasuredMotion(time, np.asarray(smooth)), cutoff, WIDE_BAND)
+
+    def reach(is_continued: bool) -> float:
+        return (REACH_PERIODS if is_continued else HALF_PERIODS) / cutoff
+
+    beside = [(BESIDE_HOLE if was_filled else HALF_PERIODS) / cutoff for was_filled in were_filled]
+    unknown = [(first - near, last + near) for (first, last), near in zip(holes, beside, strict=True)]
+    start, begin, end = float(time[0]), float(record.time[0]), float(record.time[-1])
+    if starts_moving:
+        unknown.insert(0, (start, begin + reach(lead.size > 0)))
+    if ends_moving:
+        unknown.append((end - reach(tail.size > 0), end))
+    motion = MeasuredMotion(after_start, np.asarray(smooth))
+    return BottomMotion(start, motion, cutoff, WIDE_BAND, tuple(unknown))
 
 
-def _passed(values: FloatArray, rate: float, cutoff: float) -> FloatArray:
-    """Return the values with all up to `cutoff` [Hz] untouched and nothing from 1.5 times it upwards.
+def motion_reach(frequency: float | None) -> float:
+    """Return how far from an end of the record at which the drive runs the motion is not known [s].
 
-    A flat pass band matters: a Butterworth filter with half power there would take 4 % off the second order
-    of a drive at a quarter of it.
-    """
-    from scipy.fft import irfft, next_fast_len, rfft
-
-    nyquist = 0.5 * rate
-    if cutoff * (1.0 + TRANSITION) >= nyquist:
-        return values
-    taps = math.ceil((RIPPLE - 7.95) / 2.285 / (np.pi * (TRANSITION * cutoff / nyquist)) + 1.0)
-    taps = min(taps | 1, (values.size - 1) | 1)
-    half = taps // 2
-    window = _low_pass((1.0 + 0.5 * TRANSITION) * cutoff / nyquist, taps)
-    padded = np.pad(values, half, mode="reflect", reflect_type="odd")
-    full = padded.size + taps - 1
-    size = next_fast_len(full, real=True)
-    smooth = irfft(rfft(padded, size) * rfft(window, size), size)[:full]
-    return np.array(smooth[taps - 1 : padded.size], dtype=np.float64)
-
-
-def _low_pass(cutoff: float, taps: int) -> FloatArray:
-    """Return a finite low-pass of so many taps, in Kaiser's window; the cut-off is a share of half the rate.
-
-    References
+    Parameters
     ----------
-    A. V. Oppenheim and R. W. Schafer, Discrete-Time Signal Processing, section 7.5.3.
+    frequency : float or None
+        Of the drive [Hz].
     """
-    from scipy.special import i0
+    return REACH_PERIODS / _lowest_cutoff(frequency)
 
-    beta = 0.1102 * (RIPPLE - 8.7)
-    middle = 0.5 * (taps - 1)
-    index = np.arange(taps, dtype=np.float64)
-    window = i0(beta * np.sqrt(1.0 - ((index - middle) / middle) ** 2)) / i0(beta)
-    ideal = cutoff * np.sinc(cutoff * (index - middle)) * window
-    return np.asarray(ideal / np.sum(ideal))
+
+def _lowest_cutoff(frequency: float | None) -> float:
+    return min(max(LOWEST_CUTOFF, KEPT_ORDERS * (frequency or 0.0)), WIDE_BAND)
+
+
+def _smoothed(values: FloatArray, rate: float, cutoff: float) -> FloatArray:
+    """Return the drive's band, and the wide band where something sudden happens."""
+    sudden = _sudden(values - flat_passed(values, rate, cutoff), rate)
+    index = np.arange(values.size, dtype=np.float64)
+    calm = values if sudden.all() else np.interp(index, index[~sudden], values[~sudden])
+    share = _faded(sudden, rate)
+    wide, narrow = flat_passed(values, rate, WIDE_BAND), flat_passed(calm, rate, cutoff)
+    return np.asarray(share * wide + (1.0 - share) * narrow)
 
 
 def _drive_band(
     values: FloatArray, rate: float, frequency: float | None, time: FloatArray, steady: Window | None
 ) -> float:
     """Return the cut-off [Hz] that keeps what the encoder sees above its own noise in the steady window."""
-    lowest = min(max(LOWEST_CUTOFF, KEPT_ORDERS * (frequency or 0.0)), WIDE_BAND)
+    lowest = _lowest_cutoff(frequency)
     if steady is None:
         return lowest
     part = values[(time >= steady.start) & (time <= steady.stop)]

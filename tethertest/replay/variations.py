@@ -114,4 +114,4 @@ def _replay(
         cells=cells,
         with_field=False,
     )
-    return replayed_channels(response, motion.start, measured)
+    return replayed_channels(response, motion, measured)

@@ -57,6 +57,9 @@ FEWEST_CYCLES = 3
 #: where means over two cycles never settle, cycles repeat each other within these shares of the amplitude,
 #: the tightest that finds enough of them: the tighter, the less of a ramp that sets in smoothly
 REPEATS_WITHIN = (0.003, 0.01, 0.03)
+#: the period of cycles that repeat themselves is looked for this far around the strongest line, coarse to
+#: fine, at so many places
+PERIOD_SEARCH, PERIODS_TRIED = (0.1, 0.004, 0.0002), 51
 #: a cycle is part of the motion when its amplitude is above this share of the largest: ramps climb in steps
 STRONG_SHARE = 0.5
 #: share of a cycle that a whole number of cycles may lack: the edges are found to within a few samples
@@ -192,15 +195,15 @@ def _repeating_stretch(
     """Return the longest stretch whose cycles repeat themselves, by the tightest tolerance that finds one."""
     if abs(found - frequency) > SPEED_SEARCH * frequency:
         return None
-    period = rate / found
     vector = _demodulated(time, values, rate, found, cycles=1)
     size = np.abs(vector)
     amplitude = float(np.max(size))
-    if amplitude < DETECTABLE * noise * np.sqrt(2.0 / period) or amplitude <= 0.0:
+    if amplitude < DETECTABLE * noise * np.sqrt(2.0 * found / rate) or amplitude <= 0.0:
         return None
+    found = _repeating_frequency(values, rate, found, size > STRONG_SHARE * amplitude)
+    period = rate / found
     shift = int(np.ceil(period))
-    index = np.arange(values.size, dtype=np.float64)
-    change = np.abs(np.interp(index[:-shift] + period, index, values) - values[:-shift])
+    change = _change_over(values, period)
     # both cycles belong to the strong part: a record at rest repeats itself too
     strong = (size > STRONG_SHARE * amplitude)[shift // 2 :][: change.size - shift // 2]
     for tolerance in REPEATS_WITHIN:
@@ -214,6 +217,29 @@ def _repeating_stretch(
             span = (float(max(middle - half, time[0])), float(min(middle + half, time[-1])))
             return Steady(span, found, float(np.median(size[first:last])), cycles)
     return None
+
+
+def _repeating_frequency(values: Floats, rate: float, found: float, strong: Booleans) -> float:
+    """Return the frequency at which the steadiest quarter of the strong part repeats itself best.
+
+    The largest line of a record that is half ramps lies several per cent beside the steady drive.
+    """
+    for width in PERIOD_SEARCH:
+        tried = found * (1.0 + np.linspace(-width, width, PERIODS_TRIED))
+        changes = []
+        for frequency in tried:
+            change = _change_over(values, rate / frequency)
+            among = strong[: change.size]
+            changes.append(float(np.quantile(change[among], 0.25)) if among.any() else np.inf)
+        found = float(tried[np.argmin(changes)])
+    return found
+
+
+def _change_over(values: Floats, period: float) -> Floats:
+    """Return how far each value is from the one a period [samples] later."""
+    shift = int(np.ceil(period))
+    index = np.arange(values.size, dtype=np.float64)
+    return np.asarray(np.abs(np.interp(index[:-shift] + period, index, values) - values[:-shift]))
 
 
 def _extended(

@@ -206,6 +206,7 @@ def _response(
         fields={name: values[kept] for name, values in solution.fields.items()},
         native_times=problem.native_times,
         snap=refined.snap,
+        members=() if members is None or problem.native_times else members.members,
         numbers={
             "drive_over_first_transverse": numbers.drive_over_first,
             "drive_over_first_axial": numbers.drive_over_axial,

@@ -31,6 +31,8 @@ class Spread:
     bows: float  #: the same over bows of the rest position
     upright: bool  #: the nominal run follows a line, and its members a plane: bows are another model
     peaks: tuple[float, float]  #: lowest and highest peak over the nominal one, of the nominal's own kind
+    #: (n, g) [N] each, the nominal run on the members' mesh first; empty where that broke off
+    members: tuple[FloatArray, ...] = ()
 
     @property
     def largest(self) -> float:
@@ -74,4 +76,5 @@ def slack_spread(problem: Problem, cells: int) -> Spread:
         bows=farthest(bowed),
         upright=upright,
         peaks=(min(peaks), max(peaks)),
+        members=(nominal, *(member for member in (*damped, *bowed) if member is not None)),
     )

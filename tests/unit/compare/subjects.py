@@ -63,6 +63,8 @@ def subject(**fields: object) -> Subject:
         replayed_lines=None,
         moved=(),
         moved_pairs=(),
+        members=(),
+        member_pairs=(),
         clock_error=0.0,
         static=0.0,
         limits=Limits(),

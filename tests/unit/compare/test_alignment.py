@@ -51,7 +51,7 @@ def test_noise_in_the_band_is_what_the_low_pass_leaves_of_white_noise(rate: floa
     band = prepare(channel, Window(0.5, 1.0))
     assert band is not None
     found = pair_with(band, channel)
-    assert found is not None
+    assert not isinstance(found, str)
     assert found.noise == pytest.approx(0.3 * np.sqrt(1.04 * 2.0 * 30.0 / rate))
     impulse = (np.arange(4001) == 2000).astype(np.float64)
     energy = np.sum(low_passed(impulse, rate, 30.0) ** 2)
@@ -64,7 +64,7 @@ def test_the_noise_of_a_peak_is_that_of_a_mean_over_20_ms(rate: float, samples: 
     band = prepare(channel, Window(0.2, 1.0))
     assert band is not None
     found = pair_with(band, channel)
-    assert found is not None
+    assert not isinstance(found, str)
     assert found.peak_noise == pytest.approx(0.3 / np.sqrt(samples))
 
 
@@ -75,23 +75,46 @@ def test_a_peak_is_the_largest_mean_over_20_ms_of_the_window_and_of_what_counts(
     channel = sampled(200.0, values)
     band = prepare(channel, Window(0.5, 1.5))
     assert band is not None
-    assert band.peak == pytest.approx(8.0 * 3.5 / 4.0)
     # a replay is judged where the measurement counts, by the same mean
     replayed = sampled(200.0, 2.0 * values)
     found = pair_with(band, replayed)
-    assert found is not None
+    assert not isinstance(found, str)
     assert (found.measured_peak, found.replayed_peak) == pytest.approx((7.0, 14.0))
-    # of a bridge across samples that do not count only its ends are looked at: 5 N of 8 N
-    bridged = sampled(200.0, np.where((index >= 200) & (index <= 204), 8.0, 0.0))
-    bridged = bridged.with_flags((index > 200) & (index < 204), Flag.SATURATED)
-    across = prepare(bridged, Window(0.5, 1.5))
-    assert across is not None
-    assert across.peak == pytest.approx(5.0)
     flagged = channel.with_flags(index == 250, Flag.SATURATED)
     spoiled = flagged.with_values(np.where(index == 250, 99.0, values))
     again = prepare(spoiled, Window(0.5, 1.5))
     assert again is not None
-    assert again.peak == pytest.approx(7.0)
+    unspoiled = pair_with(again, channel)
+    assert not isinstance(unspoiled, str)
+    assert unspoiled.measured_peak == pytest.approx(7.0)
+
+
+def test_nothing_counts_that_the_low_pass_mixes_with_a_long_hole_or_an_end() -> None:
+    channel = sampled(200.0, np.ones(400))
+    holed = channel.with_flags((channel.time > 0.9) & (channel.time < 1.1), Flag.SATURATED)
+    single = holed.with_flags(np.isclose(channel.time, 0.5), Flag.SPIKE)
+    band = prepare(single, Window(0.0, 2.0))
+    assert band is not None
+    found = pair_with(band, channel)
+    assert not isinstance(found, str)
+    # a thirtieth of a second about the last and first sample beside the hole, and inside both ends
+    reach, time = 1.0 / 30.0, found.time
+    spoiled = (time < reach) | (time > 1.995 - reach) | ((time > 0.9 - reach) & (time < 1.1 + reach))
+    assert np.array_equal(found.usable, ~(spoiled | np.isclose(time, 0.5)))
+
+
+def test_nothing_counts_where_the_replay_does_not_know_the_motion() -> None:
+    channel = sampled(200.0, np.linspace(1.0, 2.0, 400))
+    band = prepare(channel, Window(0.5, 1.5))
+    assert band is not None
+    replay = channel.with_flags(channel.time > 1.2, Flag.MISSING)
+    found = pair_with(band, replay)
+    assert not isinstance(found, str)
+    assert found.time[found.usable].max() == pytest.approx(1.2)
+    assert found.measured_peak == pytest.approx(found.replayed_peak)
+    nowhere = pair_with(band, channel.with_flags(channel.time > 0.1, Flag.MISSING))
+    assert isinstance(nowhere, str)
+    assert "nothing is known of both sides" in nowhere
 
 
 def test_a_replay_must_cover_the_window_to_one_sample() -> None:
@@ -102,7 +125,7 @@ def test_a_replay_must_cover_the_window_to_one_sample() -> None:
     def covers(start: float, stop: float) -> bool:
         time = np.array([start, 1.5, stop])
         replay = Channel("tension_top", "tension", "N", time, np.ones(3), np.zeros(3, dtype=np.uint16))
-        return pair_with(band, replay) is not None
+        return not isinstance(pair_with(band, replay), str)
 
     # the window's samples run from 1.00 s to 1.99 s, and one is 0.01 s
     assert covers(1.009, 1.981)
@@ -110,7 +133,7 @@ def test_a_replay_must_cover_the_window_to_one_sample() -> None:
     assert not covers(1.0, 1.979)
     empty = measured.between(9.0, 10.0)
     assert empty.time.size == 0
-    assert pair_with(band, empty) is None
+    assert pair_with(band, empty) == "the replay does not cover the window"
 
 
 def test_both_sides_pass_the_same_low_pass_at_the_measured_times() -> None:
@@ -124,11 +147,11 @@ def test_both_sides_pass_the_same_low_pass_at_the_measured_times() -> None:
         "tension_top", "tension", "N", slower, 3.0 + 0.5 * slower, np.zeros(slower.size, dtype=np.uint16)
     )
     found = pair_with(band, replay)
-    assert found is not None
+    assert not isinstance(found, str)
     assert found.time[0] == pytest.approx(1.0)
     assert found.replayed == pytest.approx(3.0 + 0.5 * found.time, abs=1e-3)
     same = pair_with(band, measured)
-    assert same is not None
+    assert not isinstance(same, str)
     assert np.array_equal(same.measured, same.replayed)
     # what lies above the cut-off is gone from the measurement as well
     assert np.std(found.measured - found.replayed) < 0.1 * np.sqrt(0.5)
@@ -136,9 +159,9 @@ def test_both_sides_pass_the_same_low_pass_at_the_measured_times() -> None:
 
 def test_samples_that_do_not_count_stay_marked() -> None:
     measured = sampled(100.0)
-    holed = measured.with_flags((measured.time >= 1.2) & (measured.time < 1.3), Flag.SPIKE)
+    holed = measured.with_flags(np.isin(np.arange(400), (120, 125)), Flag.SPIKE)
     band = prepare(holed, Window(1.0, 2.0))
     assert band is not None
     found = pair_with(band, measured)
-    assert found is not None
-    assert np.flatnonzero(~found.usable).tolist() == list(range(20, 30))
+    assert not isinstance(found, str)
+    assert np.flatnonzero(~found.usable).tolist() == [20, 25]

@@ -6,11 +6,12 @@ import numpy as np
 from scipy.signal import firwin, welch
 
 from tethertest.replay import motion
+from tethertest.signal import flat_pass
 
 
 def test_the_low_pass_is_a_kaiser_window_of_80_db():
     wanted = firwin(301, 0.1, window=("kaiser", 0.1102 * (80.0 - 8.7)))
-    np.testing.assert_allclose(motion._low_pass(0.1, 301), wanted, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(flat_pass._low_pass(0.1, 301), wanted, rtol=1e-12, atol=1e-15)
 
 
 def test_the_power_density_is_welchs():

@@ -15,7 +15,7 @@ from tethertest.records.response import Status
 from tethertest.records.rig import Limits, Rig
 from tethertest.records.run import Drive, Run, RunFile, RunPlatform
 from tethertest.records.scene import MeasuredMotion
-from tethertest.replay import replayed_channels, run_scene
+from tethertest.replay import BottomMotion, replayed_channels, run_scene
 from tethertest.replay.variations import moved
 from tethertest.solver import solve
 
@@ -28,11 +28,12 @@ RUN = Run(Path("bench"), FILE, RIG, Path("bench.toml"))
 
 
 def test_a_solve_that_left_the_range_of_numbers_is_no_replay() -> None:
-    motion = MeasuredMotion(np.linspace(0.0, 2.0, 401), np.zeros(401))
-    response = solve(run_scene(RUN, 2.0), measured=motion, finest=20)
-    assert replayed_channels(response, 0.0, ()) == ()
+    still = MeasuredMotion(np.linspace(0.0, 2.0, 401), np.zeros(401))
+    motion = BottomMotion(0.0, still, cutoff=2.0, wide_cutoff=40.0)
+    response = solve(run_scene(RUN, 2.0), measured=still, finest=20)
+    assert replayed_channels(response, motion, ()) == ()
     with pytest.raises(DataError, match="broke off"):
-        replayed_channels(replace(response, status=Status.NOT_FINITE), 0.0, ())
+        replayed_channels(replace(response, status=Status.NOT_FINITE), motion, ())
 
 
 @pytest.mark.parametrize(("key", "value"), [("length", 0.003), ("axial_stiffness", 1e12)])

@@ -99,3 +99,17 @@ def test_three_cycles_between_long_ramps_are_found_by_their_repeating():
     # as long a rest repeats itself too, but is no drive
     quiet = Record(time, np.where(time < 1.0, values, 0.0), np.ones(time.size, bool), rate=256.0)
     assert find_steady(quiet, 0.5) is None
+
+
+@pytest.mark.parametrize("stop", [28.7, 30.0, 31.4, 33.3])
+def test_a_record_that_ends_with_the_drive_running_holds_its_steady_cycles(stop: float) -> None:
+    """Half of it is rest and ramp, so that the strongest line lies per cent beside the drive."""
+    time = np.arange(0.0, stop, 0.005)
+    speed = 0.3 * np.clip((time - 6.0) / 7.0, 0.0, 1.0)
+    values = 0.15 * (1.0 - np.cos(2.0 * np.pi * np.cumsum(speed) * 0.005))
+    values += 1e-5 * np.random.default_rng(1).standard_normal(time.size)
+    steady = find_steady(Record(time, values, np.ones(time.size, bool), rate=200.0), 0.3)
+    assert steady is not None
+    assert steady.frequency == pytest.approx(0.3, rel=2e-3)
+    assert steady.cycles >= int((stop - 13.0) * 0.3) - 2
+    assert steady.span[0] > 11.0

@@ -56,7 +56,7 @@ class Subject:
             The metric of `moved`: the first differs from `value` by the mesh alone.
         members : sequence of float
             The metric of `members`: the others are draws of what nobody knows, as far from the first as this
-            one may be from the truth.
+            one may be from what is right.
         """
         numerical = abs(value - values[0]) if values else 0.0
         slack = 0.0

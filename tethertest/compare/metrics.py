@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from operator import attrgetter
 from typing import Final
@@ -98,15 +99,15 @@ def order_metrics(subject: Subject) -> list[Metric]:
     fits = [[phasors(channel, subject.window, frequencies) for channel in side] for side in sides]
     metrics = []
     for order, frequency in zip(wanted, frequencies, strict=True):
-        values, members = ([fit[frequency] for fit in side] for side in fits)
         measured, replayed = _lines_of(subject, order)
         if measured is None or replayed is None:
             metrics += _missing_order(subject, order, order in amplitudes, order in phases)
             continue
+        found = _Order(order, measured, replayed, *([fit[frequency] for fit in side] for side in fits))
         if order in amplitudes:
-            metrics.append(_amplitude_metric(subject, order, measured, replayed, values, members))
+            metrics.append(_amplitude_metric(subject, found))
         if order in phases:
-            metrics.append(_phase_metric(subject, order, measured, replayed, values, members))
+            metrics.append(_phase_metric(subject, found))
     return metrics
 
 
@@ -186,14 +187,19 @@ def _missing_order(subject: Subject, order: str, amplitude: bool, phase: bool) -
     return missing
 
 
-def _amplitude_metric(
-    subject: Subject,
-    order: str,
-    measured: Line,
-    replayed: Line,
-    replays: Sequence[complex],
-    members: Sequence[complex],
-) -> Metric:
+@dataclass(frozen=True, slots=True)
+class _Order:
+    """One order of the drive on both sides, and ``A exp(i phase)`` of all replays."""
+
+    order: str
+    measured: Line
+    replayed: Line
+    replays: Sequence[complex]  #: the run's own, then `Subject.moved`
+    members: Sequence[complex]  #: `Subject.members`
+
+
+def _amplitude_metric(subject: Subject, found: _Order) -> Metric:
+    order, measured, replayed = found.order, found.measured, found.replayed
     name, unit = f"order_amplitude {order}", subject.measured.unit
     limit = subject.limits.order_amplitude.get(order)
     if measured.verdict is LineVerdict.NONE and replayed.amplitude <= measured.interval[1]:
@@ -222,28 +228,22 @@ def _amplitude_metric(
     base = max(measured.amplitude, measured.standard_error)
     ratio = replayed.amplitude / base
     data = ratio * float(np.hypot(measured.standard_error / base, subject.measured.uncertainty))
-    found = [abs(value) / base for value in replays]
+    own, *moved = (abs(value) / base for value in found.replays)
     data = float(np.hypot(data, replayed.standard_error / base))
-    uncertainty = subject.budget(data, found[0], found[1:], [abs(value) / base for value in members])
+    uncertainty = subject.budget(data, own, moved, [abs(value) / base for value in found.members])
     return subject.metric(name, unit, measured.amplitude, replayed.amplitude, ratio - 1.0, uncertainty, limit)
 
 
-def _phase_metric(
-    subject: Subject,
-    order: str,
-    measured: Line,
-    replayed: Line,
-    replays: Sequence[complex],
-    members: Sequence[complex],
-) -> Metric:
+def _phase_metric(subject: Subject, found: _Order) -> Metric:
+    order, measured, replayed = found.order, found.measured, found.replayed
     error = order_error(measured, replayed)
     clock = 2.0 * np.pi * measured.frequency * subject.clock_error
-    turned, bowed = (
-        [wrapped(float(np.angle(value)) - float(np.angle(replays[0]))) for value in side]
-        for side in (replays, members)
+    zero = float(np.angle(found.replays[0]))
+    (own, *moved), members = (
+        [wrapped(float(np.angle(value)) - zero) for value in side] for side in (found.replays, found.members)
     )
     data = float(np.hypot(min(error.phase_uncertainty, np.pi), clock))
-    uncertainty = subject.budget(data, turned[0], turned[1:], bowed)
+    uncertainty = subject.budget(data, own, moved, members)
     limit = subject.limits.order_phase.get(order)
     return subject.metric(
         f"order_phase {order}", "rad", measured.phase, replayed.phase, error.phase, uncertainty, limit

@@ -110,7 +110,7 @@ def compare(
             continue
         if subject.limited:
             unusable[name] = _unusable_share(subject.measured, subject.window)
-            unusable[f"replay of {name}"] = _unusable_share(subject.replayed, subject.window)
+            unusable[f"replay of {name}"] = _not_replayed_share(subject.replayed, subject.window)
             metrics.append(peak_metric(subject))
         metrics += order_metrics(subject)
         metrics += sprague_geers_metrics(subject)
@@ -185,6 +185,11 @@ def _unusable_share(channel: Channel, window: Window) -> float:
     """Return the share of a window without a usable sample of the channel; rows never logged count."""
     count = np.count_nonzero(channel.between(window.start, window.stop).usable)
     return max(0.0, 1.0 - count / (channel.rate * window.length)) if channel.rate else 1.0
+
+
+def _not_replayed_share(replayed: Channel, window: Window) -> float:
+    """Return the share of a replay's samples in a window at which its motion is not known."""
+    return 1.0 - float(np.mean(replayed.between(window.start, window.stop).usable))
 
 
 def _drive_frequency(lines: Sequence[ChannelLines]) -> float | None:

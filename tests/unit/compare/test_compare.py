@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tethertest.compare import compare
-from tethertest.records.channel import ConditionedRun, Finding, Flag
+from tethertest.records.channel import Channel, ConditionedRun, Finding, Flag
 from tethertest.records.comparison import Comparison, Metric, Verdict
 from tethertest.records.rig import Limits
 
@@ -182,6 +182,20 @@ def test_rows_that_were_never_logged_leave_a_run_undecided(case: Case) -> None:
     assert "tension_top: 37.5% of the window cannot be used" in comparison.reasons[0]
 
 
+def test_rows_that_were_never_logged_are_said_once_of_measurement_and_replay(case: Case) -> None:
+    def holed(channel: Channel) -> Channel:
+        kept = (channel.time < 20.0) | (channel.time > 24.0)
+        return replace(
+            channel, time=channel.time[kept], values=channel.values[kept], flags=channel.flags[kept]
+        )
+
+    measured = tuple(holed(channel) for channel in case.measured.channels)
+    short = replace(case, measured=replace(case.measured, channels=measured))
+    reasons = short.against(tuple(holed(channel) for channel in channels())).reasons
+    assert "tension_top: 10.0% of the window cannot be used, at most 5% may" in reasons
+    assert not any(reason.startswith("replay of") for reason in reasons)
+
+
 def test_a_bottom_motion_with_too_many_holes_leaves_a_run_undecided(case: Case) -> None:
     top = case.measured.channels[0]
     heave = replace(top, name="heave", kind="displacement", unit="m", at=0.0)
@@ -197,3 +211,14 @@ def test_a_run_without_encoder_says_that_nothing_was_replayed(case: Case) -> Non
     comparison = compare(case.measured, (), (), (), LIMITS)
     assert comparison.verdict is Verdict.UNDECIDED
     assert "the bottom motion was not logged" in comparison.reasons[0]
+
+
+def test_a_motion_that_is_unknown_for_too_long_leaves_a_run_undecided(case: Case) -> None:
+    top, bottom = channels()
+    unknown = top.with_flags((top.time > 20.0) & (top.time < 24.0), Flag.MISSING)
+    comparison = case.against((unknown, bottom))
+    assert comparison.verdict is Verdict.UNDECIDED
+    assert comparison.reasons[0].startswith("replay of tension_top: 10.0% of the window cannot be used")
+    assert not any("tension_bottom: 10.0%" in reason for reason in comparison.reasons)
+    short = top.with_flags((top.time > 20.0) & (top.time < 21.0), Flag.MISSING)
+    assert case.against((short, bottom)).verdict is Verdict.PASS

@@ -101,7 +101,7 @@ def _within(time: FloatArray, spans: Sequence[tuple[float, float]]) -> BoolArray
     """Return which times lie in any of the spans."""
     inside = np.zeros(time.size, dtype=np.bool_)
     for start, stop in spans:
-        inside |= (time >= start) & (time <= stop)
+        inside[np.searchsorted(time, start) : np.searchsorted(time, stop, "right")] = True
     return inside
 
 

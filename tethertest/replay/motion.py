@@ -39,8 +39,6 @@ SUDDEN_SIGMAS = 8.0
 SUDDEN_REACH, FADE = 0.15, 0.1
 #: standard deviation of a normal variable over the median of its absolute value
 DEVIATION_OF_MEDIAN = 1.4826
-
-
 #: a hole shorter than this many periods of the cut-off is bridged to a thousandth of the drive
 SHORT_HOLE = 0.1
 #: motion that repeats itself is known beside a longer hole, but for this many periods of the cut-off
@@ -55,9 +53,8 @@ class BottomMotion:
     motion: MeasuredMotion
     cutoff: float  #: [Hz], band kept of the drive
     wide_cutoff: float  #: [Hz], band kept where something sudden happens
-    unknown: tuple[
-        Span, ...
-    ] = ()  #: run times where it is no measurement: near a moving end and in holes [s]
+    #: run times where it is no measurement: near an end at which the drive runs, and in holes [s]
+    unknown: tuple[Span, ...] = ()
 
     @property
     def duration(self) -> float:

@@ -46,7 +46,7 @@ class Record:
         """Return the drive as it repeats itself between two times; None where it does not."""
         if self.frequency is None:
             return None
-        near = (self.time >= start) & (self.time <= stop)
+        near = slice(*np.searchsorted(self.time, (start, stop)))
         return fit_repetition(self.time[near], self.values[near], self.known[near], self.frequency)
 
     @property
@@ -104,7 +104,7 @@ def with_holes_filled(record: Record, holes: Sequence[Span]) -> tuple[Record, li
         return record, []
     known, values = record.known.copy(), record.values.copy()
     for first, last in holes:
-        known[(record.time > first) & (record.time < last)] = False
+        known[_rows_between(record, first, last)] = False
     record = replace(record, known=known)
     were_filled = []
     for first, last in holes:
@@ -112,11 +112,16 @@ def with_holes_filled(record: Record, holes: Sequence[Span]) -> tuple[Record, li
         found = record.repetition(first - around, last + around)
         were_filled.append(found is not None)
         if found is not None:
-            inside = (record.time > first) & (record.time < last)
+            inside = _rows_between(record, first, last)
             left = np.interp([first, last], record.time, record.values) - found.at(np.array([first, last]))
             values[inside] = found.at(record.time[inside])
             values[inside] += np.interp(record.time[inside], [first, last], left)
     return replace(record, values=values), were_filled
+
+
+def _rows_between(record: Record, first: float, last: float) -> slice:
+    """Return the rows after `first` and before `last` [s]."""
+    return slice(int(np.searchsorted(record.time, first, "right")), int(np.searchsorted(record.time, last)))
 
 
 def lead_in(record: Record) -> FloatArray:

@@ -94,10 +94,11 @@ def _inside(steady: Steady, channels: Sequence[Channel], motion: Channel, motion
     """Return the steady window away from the ends of the records that are compared in it."""
     start, stop = steady.span
     for channel in channels:
-        if channel is motion or channel.kind == "tension":
+        known = channel.time[channel.usable]
+        if known.size and (channel is motion or channel.kind == "tension"):
             away = motion_reach if channel is motion else RECORD_END
-            start = max(start, float(channel.time[0]) + away)
-            stop = min(stop, float(channel.time[-1]) - away)
+            start = max(start, float(known[0]) + away)
+            stop = min(stop, float(known[-1]) - away)
     cycles = int((stop - start) * steady.frequency + WHOLE)
     if (start, stop) == steady.span or cycles < FEWEST_CYCLES:
         return steady

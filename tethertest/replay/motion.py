@@ -91,9 +91,11 @@ def bottom_motion(
     DataError
         Fewer than ten usable samples.
     """
-    if np.count_nonzero(heave.usable) < 10:
-        message = f"channel {heave.name!r} has {np.count_nonzero(heave.usable)} usable samples"
+    known = np.flatnonzero(heave.usable)
+    if known.size < 10:
+        message = f"channel {heave.name!r} has {known.size} usable samples"
         raise DataError(message, "the replay needs the bottom motion: export the encoder's log again")
+    heave = heave.rows(int(known[0]), int(known[-1]) + 1)
     lowest = _lowest_cutoff(frequency)
     holes = holes_of(heave, SHORT_HOLE / lowest)
     record, were_filled = with_holes_filled(

@@ -115,6 +115,23 @@ def test_where_only_the_end_rests_displacement_counts_from_there() -> None:
     assert np.abs(motion.motion.displacement[late]).max() < 1e-4
 
 
+@pytest.mark.parametrize("flag", [Flag.MISSING, Flag.STUCK])
+def test_a_record_ends_where_its_usable_samples_do(flag: Flag) -> None:
+    """An encoder that dies under the drive has not stopped the drive."""
+    heave = running(0.0, 60.0)
+    dead = heave.time > 43.9
+    value = np.nan if flag is Flag.MISSING else heave.values[np.argmax(dead)]
+    lost = heave.with_values(np.where(dead, value, heave.values)).with_flags(dead, flag)
+    windows = {"rest_before": Window(0.0, 9.0), "steady": Window(20.0, 43.0)}
+    found = bottom_motion(lost, frequency=0.31, **windows)
+    wanted = bottom_motion(heave.between(0.0, 43.9), frequency=0.31, **windows)
+    assert np.array_equal(found.motion.displacement, wanted.motion.displacement)
+    assert found.unknown == wanted.unknown
+    blind = heave.time < 30.0
+    late = heave.with_flags(blind, flag)
+    assert bottom_motion(late, frequency=0.31, steady=Window(32.0, 58.0)).unknown[0][1] > 30.0
+
+
 def test_a_ramp_at_the_end_is_not_continued_and_half_the_filter_is_not_known() -> None:
     motion = bottom_motion(
         running(0.0, 16.0), frequency=0.31, rest_before=Window(0.0, 9.0), steady=Window(12.0, 16.0)

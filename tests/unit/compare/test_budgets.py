@@ -35,6 +35,42 @@ def test_a_budget_tells_data_inputs_and_mesh_apart() -> None:
     assert subject().budget(0.1, 5.0, []).numerical == 0.0
 
 
+def test_what_nobody_knows_of_a_slack_cable_is_the_root_mean_square_of_its_members() -> None:
+    found = subject().budget(0.03, 1.0, [1.0], [2.0, 2.3, 1.6])
+    assert found.slack == pytest.approx(np.sqrt((0.3**2 + 0.4**2) / 2.0))
+    assert found.total == pytest.approx(np.hypot(0.03, found.slack))
+    assert subject().budget(0.03, 1.0, [1.0], [2.0]).slack == 0.0
+    assert subject().budget(0.03, 1.0, [1.0]).slack == 0.0
+
+
+def test_every_metric_takes_the_members_of_a_slack_cable_into_its_budget() -> None:
+    """Members 4 % larger than their nominal: nothing else is uncertain."""
+    measured = line("1", 2.0)
+    own, larger = channel(cosine(2.0)), channel(cosine(2.08))
+    taut = subject(
+        measured=own,
+        replayed=own,
+        pair=pair(own.values, own.values, measured_peak=10.0, replayed_peak=10.0),
+        measured_lines=lines(measured),
+        replayed_lines=lines(measured),
+        static=0.0,
+    )
+    slack = replace(
+        taut,
+        members=(own, larger),
+        member_pairs=(taut.pair, replace(taut.pair, replayed=larger.values, replayed_peak=10.4)),
+    )
+    for name, metrics in (
+        ("peak_tension", lambda item: [peak_metric(item)]),
+        ("order_amplitude 1", order_metrics),
+        ("sprague_geers", sprague_geers_metrics),
+    ):
+        assert named(metrics(taut), name).uncertainty == pytest.approx(0.0, abs=1e-6)
+        found = named(metrics(slack), name)
+        assert found.uncertainty == pytest.approx(0.04, rel=0.02)
+        assert "slack 4 %" in found.reason
+
+
 def test_a_metric_has_the_total_uncertainty_and_its_note() -> None:
     budget = subject().budget(0.02, 1.0, [1.01, 1.03, 1.01])
     held = subject(limits=Limits(decision="simple"))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tethertest.compare.alignment import Band, Pair, pair_with
-from tethertest.compare.decision import Uncertainty, decide
+from tethertest.compare.decision import Uncertainty, decide, few_draws_factor
 from tethertest.records.channel import Channel, Window
 from tethertest.records.comparison import Metric, Verdict
 from tethertest.records.lines import ChannelLines
@@ -56,12 +56,14 @@ class Subject:
             The metric of `moved`: the first differs from `value` by the mesh alone.
         members : sequence of float
             The metric of `members`: the others are draws of what nobody knows, as far from the first as this
-            one may be from what is right.
+            one may be from what is right. So few draws know their own spread badly: it is widened so that the
+            guard band keeps its chance.
         """
         numerical = abs(value - values[0]) if values else 0.0
         slack = 0.0
         if len(members) > 1:
-            slack = float(np.sqrt(np.mean((np.array(members[1:]) - members[0]) ** 2)))
+            distance = np.array(members[1:]) - members[0]
+            slack = few_draws_factor(distance.size) * float(np.sqrt(np.mean(distance**2)))
         return Uncertainty(data, self.input_uncertainty(values), numerical, slack)
 
     def over_pairs(self, data: float, metric: Callable[[Pair], float]) -> Uncertainty:

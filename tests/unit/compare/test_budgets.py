@@ -35,9 +35,10 @@ def test_a_budget_tells_data_inputs_and_mesh_apart() -> None:
     assert subject().budget(0.1, 5.0, []).numerical == 0.0
 
 
-def test_what_nobody_knows_of_a_slack_cable_is_the_root_mean_square_of_its_members() -> None:
+def test_what_nobody_knows_of_a_slack_cable_is_the_widened_root_mean_square_of_its_members() -> None:
     found = subject().budget(0.03, 1.0, [1.0], [2.0, 2.3, 1.6])
-    assert found.slack == pytest.approx(np.sqrt((0.3**2 + 0.4**2) / 2.0))
+    # Student's 2.920 of two degrees of freedom over the guard band's 1.645
+    assert found.slack == pytest.approx(np.sqrt((0.3**2 + 0.4**2) / 2.0) * 2.920 / 1.645, rel=1e-3)
     assert found.total == pytest.approx(np.hypot(0.03, found.slack))
     assert subject().budget(0.03, 1.0, [1.0], [2.0]).slack == 0.0
     assert subject().budget(0.03, 1.0, [1.0]).slack == 0.0
@@ -67,8 +68,8 @@ def test_every_metric_takes_the_members_of_a_slack_cable_into_its_budget() -> No
     ):
         assert named(metrics(taut), name).uncertainty == pytest.approx(0.0, abs=1e-6)
         found = named(metrics(slack), name)
-        assert found.uncertainty == pytest.approx(0.04, rel=0.02)
-        assert "slack 4 %" in found.reason
+        assert found.uncertainty == pytest.approx(0.04 * 6.314 / 1.645, rel=0.02)
+        assert "slack 15 %" in found.reason
 
 
 def test_a_metric_has_the_total_uncertainty_and_its_note() -> None:
